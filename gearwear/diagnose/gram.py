@@ -5,22 +5,17 @@ With the columns of all candidates at hand once, every fit, every gain and every
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.diagnose.beside import RIDGE, Beside
 from gearwear.diagnose.columns import CellColumns
-
-RIDGE = 1e-9
-"""Relative to the column's own sum: keeps exactly collinear columns solvable; they gain nothing by it."""
-
 
 BATCH = 4096
 """Rows of dense columns that are weighted at a time: no copy of all is made, and what is in work stays near the processor."""
-SPANNED = 1e-6
-"""Share of a column's own square below which nothing of it is left beside others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +51,13 @@ class Gram:
                 flat[(which[:, None] * p + which).reshape(-1)] += (part.T @ part).reshape(-1)
                 moment[f][which] += part.T @ aim[at]
         return cls(information, moment, square, total)
+
+    @classmethod
+    def whole(cls, columns: Floats, target: Floats, weight: Floats) -> Gram:
+        """The same of columns (m, p) that are not zero on many rows, all together."""
+        root = np.sqrt(weight)
+        part, aim = columns * root[:, None], target * root
+        return cls((part.T @ part)[None], (part.T @ aim)[None], np.array([aim @ aim]), np.array([weight.sum()]))
 
     def solve(self, which: Ints, without: int | None = None) -> tuple[Floats, Floats]:
         """Amplitudes and inverse information of the fit on columns `which`, on all folds or all but one."""
@@ -107,16 +109,16 @@ class Gram:
 
     def gains(self, base: Ints, blocks: list[Ints]) -> Floats:
         """Fall of the weighted sum of squares when each block of columns is added to `base`."""
-        beside = self.beside(base)
-        return beside.gains(np.arange(0), beside.blocks(blocks), len(blocks))
+        gains: Floats = self.beside(base, blocks).tried(np.zeros((1, 0), np.int64))[1][0]
+        return gains
 
-    def beside(self, base: Ints) -> Beside:
-        """What all columns hold beside the fit on columns `base`."""
+    def beside(self, base: Ints, candidates: Sequence[Ints] = ()) -> Beside:
+        """What all columns hold beside the fit on columns `base`, and candidates of which each is some columns."""
         a, b = self._sums(None)
         amplitudes, inverse = self.solve(base)
         spanned = a[:, base] @ inverse
         square = float(self.square.sum() - amplitudes @ b[base])
-        return Beside(a - spanned @ a[base], b - a[:, base] @ amplitudes, square, np.diag(a).copy())
+        return Beside(a - spanned @ a[base], b - a[:, base] @ amplitudes, square, np.diag(a).copy(), tuple(candidates))
 
     def held_out(self, which: Ints) -> Floats:
         """(folds,) weighted sum of squares of each fold under the fit on the others."""
@@ -154,101 +156,3 @@ def _weighted(columns: Floats | tuple[CellColumns, ...], root: Floats, rows: Int
             filled += len(piece.which)
             np.multiply(piece.values, own, out=part[:, filled - len(piece.which) : filled])
         yield at, np.concatenate(which), part
-
-
-@dataclass(frozen=True, slots=True)
-class Block:
-    """Candidates of one number of columns, which are tried one by one and solved together.
-
-    Parameters
-    ----------
-    at : (n,) int
-        Which candidates.
-    which : (n, size) int
-        The columns of each that anybody sees: what nobody sees neither helps nor hinders.
-    information : (n, size, size) float
-        Of these columns.
-    """
-
-    at: Ints
-    which: Ints
-    information: Floats
-
-
-@dataclass(frozen=True, slots=True)
-class Beside:
-    """The sums of columns without what others span of them: a fit on them is the fit on both (Frisch and Waugh 1933, Lovell 1963).
-
-    So what is in every fit is solved for once, and a search goes on with the few columns that it tries.
-
-    Parameters
-    ----------
-    information : (p, p) float
-    moment : (p,) float
-    square : float
-        Weighted sum of squares that the others leave.
-    own : (p,) float
-        Weighted squares of the whole columns; by these the ridge is measured.
-    """
-
-    information: Floats
-    moment: Floats
-    square: float
-    own: Floats
-
-    def solve(self, which: Ints) -> tuple[Floats, Floats]:
-        """Amplitudes and inverse information of the fit on columns `which` beside the others."""
-        scaled, root = self._scaled(which)
-        inverse = np.linalg.inv(scaled) / (root[:, None] * root)
-        return inverse @ self.moment[which], inverse
-
-    def fit(self, which: Ints) -> tuple[Floats, float]:
-        """Amplitudes of the fit on columns `which`, and the weighted sum of squares that it leaves."""
-        if len(which) == 0:
-            return np.zeros(0), self.square
-        scaled, root = self._scaled(which)
-        amplitudes = np.linalg.solve(scaled, self.moment[which] / root) / root
-        return amplitudes, float(self.square - amplitudes @ self.moment[which])
-
-    def _scaled(self, which: Ints) -> tuple[Floats, Floats]:
-        """The information of columns `which` in the lengths of the whole columns, with the ridge; and these lengths."""
-        root = np.sqrt(self.own[which])
-        root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
-        scaled = self.information[which[:, None], which] / (root[:, None] * root)
-        scaled.flat[:: len(which) + 1] += RIDGE
-        return scaled, root
-
-    def blocks(self, candidates: list[Ints]) -> tuple[Block, ...]:
-        """Candidates, each some columns, in groups of one size."""
-        seen = [columns[self.own[columns] > 0.0] for columns in candidates]
-        sizes = np.array([len(columns) for columns in seen])
-        groups = []
-        for size in np.unique(sizes[sizes > 0]):
-            at = np.flatnonzero(sizes == size)
-            which = np.array([seen[i] for i in at])
-            groups.append(Block(at, which, self.information[which[:, :, None], which[:, None, :]]))
-        return tuple(groups)
-
-    def gains(self, base: Ints, blocks: tuple[Block, ...], count: int) -> Floats:
-        """Fall of the weighted sum of squares when each of `count` candidates is added to `base`, (count,)."""
-        rest, across = self.moment, self.information[:, base]
-        if len(base):
-            amplitudes, inverse = self.solve(base)
-            rest = rest - across @ amplitudes
-            spanned = across @ inverse
-        result = np.zeros(count)
-        for block in blocks:
-            which, left = block.which, block.information
-            if len(base):
-                left = left - spanned[which] @ across[which].swapaxes(1, 2)
-            diagonal = np.einsum("nii->ni", left)
-            # A column that the base already spans has nothing left: no gain from rounding.
-            good = (diagonal >= SPANNED * self.own[which]).all(axis=1)
-            if which.shape[1] == 1:
-                at = which[good, 0]
-                result[block.at[good]] = rest[at] ** 2 / (diagonal[good, 0] * (1.0 + RIDGE))
-            elif good.any():
-                ridge = RIDGE * diagonal[good][:, :, None] * np.eye(which.shape[1])
-                aim = rest[which[good]]
-                result[block.at[good]] = np.einsum("ni,ni->n", aim, np.linalg.solve(left[good] + ridge, aim[..., None])[..., 0])
-        return result

@@ -30,7 +30,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.diagnose.worn_flanks import worn_flanks
-from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
+from gearwear.diagnose.worn_sides import NO_SIDE, side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 
@@ -42,6 +42,9 @@ MOST_ROUNDS = 10
 """Rounds of mask, search and covariance, at most; numerical."""
 SETTLED = 0.002
 """Share of the cells by which the mask may still change from one round to the next; numerical."""
+STILL = 0.01
+"""Part of the range of a shape value by which it may still move from one round to the next: each is refined anew about where it stands, and never comes
+out the same to the last digit; numerical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +79,7 @@ def close_loop(
     root_free: bool = False,
     worn: frozenset[Side] | None = None,
     out: Bools | None = None,
+    decided: tuple[frozenset[Side], ...] = (),
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -95,6 +99,8 @@ def close_loop(
         Sides that are known to be worn throughout; None: the scan decides.
     out : (m,) bool or None
         Cells that a look at fewer cells left out because they look worn (`left_out`): the search begins without them.
+    decided : tuple of frozenset of Side
+        What such a look decided, and then what it did not exclude; empty where there was none.
 
     Returns
     -------
@@ -110,26 +116,29 @@ def close_loop(
     def searched_without(sides: frozenset[Side]) -> Searched:
         return _first_search(cells, noise, replace(context, worn=sides), made, always, out, apart)
 
-    plain = searched_without(worn or NO_SIDE)
+    if worn is not None:
+        decided = (worn,)
+    plain = searched_without(decided[0] if decided else NO_SIDE)
     low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
     if _still_in(plain, low):
         apart = cells.grid.on_flanks(low)
         plain = searched_without(plain.worn)
-    known = SideCosts({plain.worn: 0.0})
-    # Whether a side is worn throughout the others tell.
-    others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
-    costs = known if worn is not None else side_costs(others_alone, plain.problem, plain.model, noise)
+    if not decided:
+        # Whether a side is worn throughout the others tell.
+        others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
+        costs = side_costs(others_alone, plain.problem, plain.model, noise)
+        decided = costs.chosen, *costs.not_excluded
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
         return replace(loop, worn_flanks=low if apart.any() else None)
 
-    taken = explained(costs.chosen)
+    taken = explained(decided[0])
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
     refuted = worn is None and _refuted(taken, cells, flanks)
     if refuted:
         taken = explained(frozenset(Side))
-    others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
+    others = () if refuted else tuple(explained(sides) for sides in decided[1:])
     named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
     if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
         named = tuple(_or_smoothing(effect) for effect in named)
@@ -262,6 +271,7 @@ def _search(
     """Forward to the floor and exchange, with mask, shapes and covariance renewed round by round."""
     sound, unit, plain = fit.use, rules().first_unit, residual
     model: Model = ()
+    polished: tuple[Model, Bools] | None = None  # what no exchange was found for, and on which cells
     for round_ in range(MOST_ROUNDS):
         caution, last = rules().caution[min(round_, len(rules().caution) - 1)], fit.use
         worn = worn_mask(fit.cells, residual, noise, caution)
@@ -271,25 +281,44 @@ def _search(
             worn |= whole_flanks(fit.cells, plain, worn & sound, sound)
         use = sound & ~worn & not_stray(residual, sound)
         fit = Fit(fit.cells, fit.target, fit.dictionary, use, fit.covariance)
-        before = [(c.name, c.shape) for c in model]
+        before = model
         problem = fit.problem(unit, context, always)
         model = problem.with_known(model)
         model = _searched(problem, model) if round_ < 2 else exchange(problem, model)
         dictionary, model = refine_shapes(problem, model, fit.cells, fit.target, use, fit.covariance)
-        if round_ >= 1:
+        alike = polished is not None and _same(model, polished[0], context) and _settled(use, polished[1], sound)
+        if round_ >= 1 and not alike:
             if dictionary is not fit.dictionary:
                 problem = Fit(fit.cells, fit.target, dictionary, use, fit.covariance).problem(unit, context, always)
+            start = model
             dictionary, model = polish(problem, model, fit.cells, fit.target, use, fit.covariance)
+            polished = (model, use) if model is start else None
         fit = Fit(fit.cells, fit.target, dictionary, use, fit.covariance)
         residual = fit.residual(model)
         covariance = estimate_covariance(fit.cells, residual, use, noise)
         unit = design_unit(dictionary, use, covariance)
         fit = Fit(fit.cells, fit.target, dictionary, use, covariance)
         # A freedom for every tooth takes its share of a worn flank until all of that is masked.
-        settled = float((use != last).sum()) < SETTLED * float(sound.sum())
-        if round_ >= 2 and settled and [(c.name, c.shape) for c in model] == before:
+        if round_ >= 2 and _settled(use, last, sound) and _same(model, before, context):
             break
     return fit, fit.problem(unit, context, always), model
+
+
+def _settled(use: Bools, last: Bools, sound: Bools) -> bool:
+    """Whether the mask has hardly changed."""
+    return float((use != last).sum()) < SETTLED * float(sound.sum())
+
+
+def _same(model: Model, before: Model, context: Context) -> bool:
+    """Whether two models have the same effects, at shapes that are the same but for a small part of the range in which each is refined."""
+    if [c.name for c in model] != [c.name for c in before]:
+        return False
+    for new, old in zip(model, before, strict=True):
+        ranges = old.effect.bracket(old.shape, context)
+        nearly = [abs(a - b) <= STILL * (high - low) for a, b, (low, high) in zip(new.shape, old.shape, ranges, strict=False)]
+        if not all(nearly) or new.shape[len(ranges) :] != old.shape[len(ranges) :]:
+            return False
+    return True
 
 
 def _searched(problem: Problem, model: Model) -> Model:

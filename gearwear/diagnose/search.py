@@ -7,16 +7,17 @@ Several effects at once each look insignificant against what the others leave, s
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.diagnose.beside import MANY, NOTHING, Beside
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context
-from gearwear.diagnose.gram import Beside, Block, Gram
+from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.rules import rules
 
 
@@ -48,12 +49,12 @@ class Problem:
     @cached_property
     def beside_pose(self) -> Beside:
         """What the candidates hold beside the pose, which is in every fit."""
-        return self.gram.beside(self.dictionary.pose)
+        return self.gram.beside(self.dictionary.pose, [c.columns for c in self.dictionary.candidates])
 
     @cached_property
-    def _blocks(self) -> tuple[Block, ...]:
-        """All candidates, in groups of one size."""
-        return self.beside_pose.blocks([c.columns for c in self.dictionary.candidates])
+    def _beside_many(self) -> dict[tuple[int, ...], Beside]:
+        """The same beside candidates of many columns besides, which are solved for once; by their columns."""
+        return {(): self.beside_pose}
 
     @cached_property
     def prices(self) -> Floats:
@@ -66,12 +67,38 @@ class Problem:
         names = np.array([c.name for c in self.dictionary.candidates])
         return {name: np.flatnonzero(names == name) for name in names.tolist()}
 
+    @cached_property
+    def by_name(self) -> tuple[Ints, Ints]:
+        """All candidates, those of one effect behind one another, and where each effect begins."""
+        groups = list(self._of_name.values())
+        ends = np.cumsum([len(one) for one in groups], dtype=np.int64)
+        return (np.concatenate(groups), np.concatenate([[0], ends[:-1]])) if groups else (ends, ends)
+
     def gains(self, base: tuple[Candidate, ...]) -> Floats:
         """Fall of the sum of squares with each candidate added to `base`, (n,); 0 for other shapes of its effects."""
-        gains = self.beside_pose.gains(_own_columns(base), self._blocks, len(self.dictionary.candidates))
-        for candidate in base:
-            gains[self._of_name[candidate.name]] = 0.0
+        gains: Floats = self.tried([base])[1][0]
         return gains
+
+    def tried(self, bases: Sequence[tuple[Candidate, ...]]) -> tuple[Floats, Floats]:
+        """Of each of some models the sum of squares that it and the pose leave, (k,), and the fall of it with each candidate added, (k, n); 0 for
+        other shapes of its effects."""
+        squares, gains = np.zeros(len(bases)), np.zeros((len(bases), len(self.dictionary.candidates)))
+        alike = dict[tuple[int, ...], list[int]]()
+        few = [_own_columns(tuple(c for c in base if len(c.columns) < MANY)) for base in bases]
+        for i, base in enumerate(bases):
+            many = _own_columns(tuple(c for c in base if len(c.columns) >= MANY))
+            alike.setdefault(tuple(many.tolist()), []).append(i)
+        for columns, at in alike.items():
+            if columns not in self._beside_many:
+                self._beside_many[columns] = self.beside_pose.beside(np.array(columns))
+            together = np.full((len(at), max(len(few[i]) for i in at)), NOTHING)
+            for row, i in zip(together, at, strict=True):
+                row[: len(few[i])] = few[i]
+            squares[at], gains[at] = self._beside_many[columns].tried(together)
+        for i, base in enumerate(bases):
+            for candidate in base:
+                gains[i, self._of_name[candidate.name]] = 0.0
+        return squares, gains
 
     def fitted(self, chosen: tuple[Candidate, ...]) -> tuple[Floats, float]:
         """Amplitudes of the chosen candidates, and the sum of squares that they and the pose leave."""
@@ -165,28 +192,16 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bo
     return None
 
 
-def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
-    """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost."""
-    costs, near = dict[frozenset[int], float](), dict[frozenset[int], list[Candidate]]()  # neighbours share most of their own
-
-    def cost_of(option: tuple[Candidate, ...]) -> float:
-        key = _key(option)
-        if key not in costs:
-            costs[key] = problem.cost(option)
-        return costs[key]
-
-    def near_to(base: tuple[Candidate, ...]) -> list[Candidate]:
-        key = _key(base)
-        if key not in near:
-            near[key] = promising(problem, base, rules().tried)
-        return near[key]
-
-    cost = cost_of(chosen)
+def exchange(problem: Problem, chosen: tuple[Candidate, ...], around: Around | None = None) -> tuple[Candidate, ...]:
+    """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost; `around` is what searches of this problem
+    from other starts found out, to which it adds."""
+    around = around or Around(problem, {}, {}, {})  # neighbours share most of their own
+    cost = around.cost(chosen)
     while True:
         best, least = chosen, cost
-        for option in _moves(problem, chosen, near_to):
-            value = cost_of(option)
-            if value < least - 1e-6:
+        for option, about in _moves(problem, chosen, around):
+            # What a move comes to is known from what it gains; whether its amplitudes are possible is asked where it would be taken.
+            if about < least and (value := around.cost(option)) < least - 1e-6:
                 best, least = option, value
         if best is chosen:
             return chosen
@@ -198,33 +213,100 @@ def _key(chosen: tuple[Candidate, ...]) -> frozenset[int]:
     return frozenset(int(c.columns[0]) for c in chosen)
 
 
-def _moves(
-    problem: Problem, chosen: tuple[Candidate, ...], near_to: Callable[[tuple[Candidate, ...]], list[Candidate]]
-) -> list[tuple[Candidate, ...]]:
+Move = tuple[tuple[Candidate, ...], float]
+"""A model, and what it costs if its amplitudes are possible."""
+
+
+@dataclass(frozen=True, slots=True)
+class Around:
+    """Models and moves that add a candidate to them, as far as they were asked for.
+
+    Parameters
+    ----------
+    problem : Problem
+    known : dict
+        By `_key` of the model: its own cost, and the few candidates that gain most beside it, each with what it comes to.
+    costs : dict
+        The same of a model whose amplitudes were asked for: infinite where they are impossible.
+    prices : dict
+        `Problem.penalty` of candidates, by their first column.
+    """
+
+    problem: Problem
+    known: dict[frozenset[int], tuple[float, list[tuple[Candidate, float]]]]
+    costs: dict[frozenset[int], float]
+    prices: dict[int, float]
+
+    def cost(self, model: tuple[Candidate, ...]) -> float:
+        """`Problem.cost`."""
+        key = _key(model)
+        if key not in self.costs:
+            self.costs[key] = self.problem.cost(model)
+        return self.costs[key]
+
+    def price(self, candidate: Candidate) -> float:
+        """`Problem.penalty`."""
+        first = int(candidate.columns[0])
+        if first not in self.prices:
+            self.prices[first] = self.problem.penalty(candidate)
+        return self.prices[first]
+
+    def look(self, bases: Sequence[tuple[Candidate, ...]]) -> None:
+        """Find out about models, all that are new together."""
+        new = {key: base for base in bases if (key := _key(base)) not in self.known}
+        if not new:
+            return
+        problem = self.problem
+        squares, gains = problem.tried(list(new.values()))
+        for (key, base), square, gain in zip(new.items(), squares.tolist(), gains, strict=True):
+            own = square / problem.unit + sum(self.price(c) for c in base)
+            near = _most_promising(problem, gain, rules().tried)
+            added = [(c, own - float(gain[i]) / problem.unit + self.price(c)) for i, c in near]
+            self.known[key] = own, added
+
+    def itself(self, base: tuple[Candidate, ...]) -> Move:
+        return base, self.known[_key(base)][0]
+
+    def added(self, base: tuple[Candidate, ...]) -> list[Move]:
+        return [((*base, c), cost) for c, cost in self.known[_key(base)][1]]
+
+
+def _moves(problem: Problem, chosen: tuple[Candidate, ...], around: Around) -> list[Move]:
     """Neighbours of a set of effects; swaps are tried for the few candidates that gain most in each place."""
-    moves: list[tuple[Candidate, ...]] = []
     every = range(len(chosen))
+    without = [chosen[:i] + chosen[i + 1 :] for i in every]
+    pairs = [[chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :] for j in range(i + 1, len(chosen))] for i in every]
+    around.look([chosen, *without, *(pair for row in pairs for pair in row)])
+    around.look([one for rest in without for one, _ in around.added(rest)])
+    moves: list[Move] = []
     for i in every:
-        rest = chosen[:i] + chosen[i + 1 :]
-        moves.append(rest)
-        near = near_to(rest)
-        moves += [(*rest, c) for c in near]
-        for first in near:
-            moves += [(*rest, first, c) for c in near_to((*rest, first))]
-        for j in range(i + 1, len(chosen)):
-            pair = chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :]
-            moves += [(*pair, c) for c in near_to(pair)]
-    moves += [(*chosen, c) for c in near_to(chosen)]
-    return [move for move in moves if len(move) <= rules().most_effects + 1 and problem.keeps(move)]
+        moves.append(around.itself(without[i]))
+        near = around.added(without[i])
+        moves += near
+        for first, _ in near:
+            moves += around.added(first)
+        for pair in pairs[i]:
+            moves += around.added(pair)
+    moves += around.added(chosen)
+    return [move for move in moves if len(move[0]) <= rules().most_effects + 1 and problem.keeps(move[0])]
 
 
 def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:
     """Candidates of greatest net gain over `base`, the best shape of each effect only."""
-    net = problem.gains(base) / problem.unit - problem.prices
-    found: dict[str, Candidate] = {}
-    for place in np.argsort(net)[::-1]:
-        if net[place] <= 0.0 or len(found) == count:
+    return [candidate for _, candidate in _most_promising(problem, problem.gains(base), count)]
+
+
+def _most_promising(problem: Problem, gains: Floats, count: int) -> list[tuple[int, Candidate]]:
+    """The same from what each candidate gains, (n,), and which they are."""
+    net = gains / problem.unit - problem.prices
+    order, firsts = problem.by_name
+    if not len(order):
+        return []
+    best, found = np.maximum.reduceat(net[order], firsts), []
+    for which in np.argsort(best)[::-1][:count].tolist():
+        if best[which] <= 0.0:
             break
-        candidate = problem.dictionary.candidates[place]
-        found.setdefault(candidate.name, candidate)
-    return list(found.values())
+        own = order[firsts[which] : firsts[which + 1] if which + 1 < len(firsts) else None]
+        place = int(own[np.argmax(net[own])])
+        found.append((place, problem.dictionary.candidates[place]))
+    return found

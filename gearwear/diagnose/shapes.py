@@ -24,10 +24,14 @@ ALIKE = 1e-5
 """Part of a column that others leave, below which squares of the columns lose too many digits; numerical."""
 Shaped = tuple[tuple[Effect, Shape], ...]
 """Effects of some shapes."""
+BestOf = Callable[[Callable[[Shape], float], Shape, int, float, float], Shape]
+"""Finds the best value of one axis of a shape within a range."""
 Gain = Callable[[Effect, Shape], float]
 """What an effect of some shape gains beside others."""
-REMEMBERED, FRAMES = 128, 4
-"""Bases, and sets of effects with what they span, that are remembered: some tens of megabytes."""
+REMEMBERED, FRAMES = 2_500_000, 4
+"""Values of bases, about, and sets of effects with what they span, that are remembered: some tens of megabytes."""
+PLACES = 9
+"""Places in its range at which a shape value is tried first: a seam has its best at every tooth."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +63,7 @@ class Trials:
         def evaluated(effect: Effect, shape: Shape) -> Floats:
             return cell_basis(effect, points, problem.context, shape, cells.grid)
 
-        basis = cast(Callable[[Effect, Shape], Floats], lru_cache(maxsize=REMEMBERED)(evaluated))
+        basis = cast(Callable[[Effect, Shape], Floats], lru_cache(maxsize=REMEMBERED // max(len(rows), 1))(evaluated))
 
         def columns(model: Shaped) -> Floats:
             return np.hstack([pose, *(basis(effect, shape) for effect, shape in model)])
@@ -71,29 +75,30 @@ class Trials:
 
         return cls(problem, columns, gain, target, weight)
 
-    def refined(self, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+    def refined(self, chosen: tuple[Candidate, ...], best_of: BestOf | None = None) -> tuple[Candidate, ...]:
         """The same effects, each in turn at its best shape; their columns are still those of the shapes they had."""
+        best_of = best_of or _golden
         for i, candidate in enumerate(chosen):
             ranges = candidate.effect.bracket(candidate.shape, self.problem.context)
             if not ranges:
                 continue
             gain = partial(self.gain(_shaped(chosen[:i] + chosen[i + 1 :])), candidate.effect)
-            best = self._at_best(candidate, gain)
+            best = self._at_best(candidate, gain, best_of)
             others = candidate.effect.other_forms(candidate.shape, self.problem.context)
             if others:
-                other = self._at_best(replace(candidate, shape=max(others, key=gain)), gain)
+                other = self._at_best(replace(candidate, shape=max(others, key=gain)), gain, best_of)
                 costs = [self.problem.penalty(one) - gain(one.shape) / self.problem.unit for one in (best, other)]
                 best = other if costs[1] < costs[0] else best
             if best.shape != candidate.shape:
                 chosen = (*chosen[:i], best, *chosen[i + 1 :])
         return chosen
 
-    def _at_best(self, candidate: Candidate, gain: Callable[[Shape], float]) -> Candidate:
+    def _at_best(self, candidate: Candidate, gain: Callable[[Shape], float], best_of: BestOf) -> Candidate:
         """The candidate with the continuous shape values of greatest gain between their neighbours on the grid."""
         shape = candidate.shape
         for axis, (low, high) in enumerate(candidate.effect.bracket(shape, self.problem.context)):
             if high > low:
-                shape = _golden(gain, shape, axis, low, high)
+                shape = best_of(gain, shape, axis, low, high)
         return replace(candidate, shape=shape) if gain(shape) > gain(candidate.shape) else candidate
 
     def cost(self, model: tuple[Candidate, ...]) -> float:
@@ -203,36 +208,63 @@ def polish(
                 near = near[: rules().tried] + [c for c in near[rules().tried :] if c.name in {own.name, second.name}]
                 trials += [(*others, c) for c in near if shaped(c)]
     trials = [trial for trial in trials if problem.keeps(trial)]
-    costs = each([partial(lambda trial: on_cells.cost(on_cells.refined(trial)), trial) for trial in trials])
     best, least = chosen, on_cells.cost(chosen)
+
+    def cost(trial: tuple[Candidate, ...]) -> float:
+        """Of the trial at its best; nearly there already tells whether it can be the cheaper one."""
+        nearly = on_cells.cost(on_cells.refined(trial, _nearly))
+        return nearly if nearly > least + rules().close else on_cells.cost(on_cells.refined(trial))
+
+    costs = each([partial(cost, trial) for trial in trials])
     for trial, value in zip(trials, costs, strict=True):
         if value < least - 1e-6:
             best, least = trial, value
     return (problem.dictionary, chosen) if best is chosen else _with_columns(problem, best, on_cells.refined(best), cells)
 
 
+def _nearly(gain: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float) -> Shape:
+    """Near the best value of one shape axis in [low, high]: where a parabola through the best of some places and its neighbours is highest."""
+    places, best, gains = _best_place(gain, shape, axis, low, high)
+    if not 0 < best < PLACES - 1:
+        return _at(shape, axis, float(places[best]))
+    before, here, after = gains[best - 1 : best + 2]
+    bend = 2.0 * here - before - after
+    shift = 0.5 * (after - before) / bend if bend > 0.0 else 0.0
+    top = _at(shape, axis, float(places[best] + shift * (places[1] - places[0])))
+    return top if gain(top) > here else _at(shape, axis, float(places[best]))
+
+
 def _golden(gain: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float, steps: int = 12) -> Shape:
-    """Best value of one shape axis in [low, high]: nine places first (a seam has its best at every tooth), then golden section."""
+    """Best value of one shape axis in [low, high]: some places first, then golden section."""
     golden = 0.6180339887498949
-
-    def at(value: float) -> Shape:
-        return (*shape[:axis], value, *shape[axis + 1 :])
-
-    places = np.linspace(low, high, 9)
-    best = int(np.argmax([gain(at(float(place))) for place in places]))
-    low, high = float(places[max(best - 1, 0)]), float(places[min(best + 1, 8)])
+    places, best, _ = _best_place(gain, shape, axis, low, high)
+    low, high = float(places[max(best - 1, 0)]), float(places[min(best + 1, PLACES - 1)])
     a, b = high - golden * (high - low), low + golden * (high - low)
-    fa, fb = gain(at(a)), gain(at(b))
+    fa, fb = gain(_at(shape, axis, a)), gain(_at(shape, axis, b))
     for _ in range(steps):
         if fa > fb:
             high, b, fb = b, a, fa
             a = high - golden * (high - low)
-            fa = gain(at(a))
+            fa = gain(_at(shape, axis, a))
         else:
             low, a, fa = a, b, fb
             b = low + golden * (high - low)
-            fb = gain(at(b))
-    return at(a if fa > fb else b)
+            fb = gain(_at(shape, axis, b))
+    return _at(shape, axis, a if fa > fb else b)
+
+
+def _at(shape: Shape, axis: int, value: float) -> Shape:
+    """The shape with another value on one axis."""
+    return (*shape[:axis], value, *shape[axis + 1 :])
+
+
+def _best_place(
+    gain: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float
+) -> tuple[Floats, int, list[float]]:
+    """Places in a range, which of them is the best, and what each gains."""
+    places = np.linspace(low, high, PLACES)
+    gains = [gain(_at(shape, axis, float(place))) for place in places]
+    return places, int(np.argmax(gains)), gains
 
 
 def shape_columns(candidate: Candidate, amplitudes: Floats, cells: Cells, context: Context) -> Floats:

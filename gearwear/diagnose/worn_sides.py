@@ -23,44 +23,22 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
 from gearwear.diagnose.columns import CellColumns, Stretch, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
+from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.few_cells import on_few_cells
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import above_last_fillet_edge, sound_cells
+from gearwear.diagnose.robust_fit import SETTLED, Robust, Shares, robust_fit
 from gearwear.diagnose.rules import rules
-from gearwear.diagnose.search import Problem, exchange, free_penalty
+from gearwear.diagnose.search import Around, Problem, exchange, free_penalty
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 from gearwear.processors import each
-from gearwear.robust import scale_about, tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
 SMOOTH = 4
 """Degree up to which a profile may be a polynomial; beyond, it bends."""
-PASSES = 6
-"""Reweighted fits, wide and again narrow, at most; numerical."""
-SETTLED = 0.01
-"""Part of `close` by which the sum of squares may still change from one reweighted fit to the next; numerical."""
-
-
-@dataclass(frozen=True, slots=True)
-class Robust:
-    """A fit that cells it cannot explain do not bend.
-
-    Parameters
-    ----------
-    weight : (m,) float
-        1 / mm², of the last pass.
-    amplitudes, std : (p,) float
-        And their standard deviations, were the cells independent.
-    square : float
-        Sum over the cells of the squared residual in its standard deviations, at most `close` for each.
-    """
-
-    weight: Floats
-    amplitudes: Floats
-    std: Floats
-    square: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +89,8 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
         A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
     model = problem.with_offsets(model)
-    scan = _Scan.of(fit, problem, model, noise)
+    fit, sound = on_few_cells(fit, _believed(fit.cells, problem.context, noise), noise)
+    scan = _Scan.of(fit, problem, model, noise, sound)
     shared, price = _made_profiles(fit.cells)
     by_side = _by_side(fit.cells, shared), np.tile(price, len(Side))
     profiles = (shared[:, :0], price[:0]), (shared, price), by_side
@@ -121,6 +100,15 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
     worn = each([partial(scan.least_worn_cost, model, sides, apart < made) for sides in answers])
     tenable = {sides: cost for sides, cost in zip(answers, worn, strict=True) if cost is not None}
     return SideCosts({NO_SIDE: min(made, apart)} | tenable, made)
+
+
+def _believed(cells: Cells, context: Context, noise: float) -> Bools:
+    """Cells that tell of wear throughout, (m,). Where on the columns next to the form circle contact begins, and wear with it, no drawing of one gear tells."""
+    points, way, edge = cells.points, cells.grid.gear.orientation, cells.grid.roll_edges[1]
+    first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
+    first |= (points.surface == FILLET) & above_last_fillet_edge(cells)
+    believed: Bools = sound_cells(cells, NO_SIDE, context.fillets_told) & ~first & ~rounded_ends(cells, noise)
+    return believed
 
 
 @dataclass(frozen=True)
@@ -142,88 +130,80 @@ class _Scan:
         return {}
 
     @classmethod
-    def of(cls, fit: Fit, problem: Problem, model: Model, noise: float) -> _Scan:
+    def of(cls, fit: Fit, problem: Problem, model: Model, noise: float, sound: Bools) -> _Scan:
         """With the correlation that the richest of all hypotheses leaves: what a poorer one cannot explain is not its noise (Mallows 1973)."""
-        cells, points = fit.cells, fit.cells.points
-        # Where on the columns next to the form circle contact begins, and wear with it, no drawing of one gear tells.
-        way, edge = cells.grid.gear.orientation, cells.grid.roll_edges[1]
-        first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
-        first |= (points.surface == FILLET) & above_last_fillet_edge(cells)
-        sound = sound_cells(cells, NO_SIDE, problem.context.fillets_told) & ~first & ~rounded_ends(cells, noise)
-        free = _by_side(cells, _profile(cells))
-        columns = np.hstack([fit.columns(model), free])
+        cells = fit.cells
         scan = cls(fit, problem, sound)
+        free = _by_side(cells, _profile(cells))[scan.rows]
+        columns = np.hstack([scan.columns(model), free])
         for _ in range(2):
             # Which cells are in at all moves the correlation: these fits go through all passes.
             fitted = scan.robust(columns, settled=0.0)
-            common = free @ fitted.amplitudes[-free.shape[1] :]
-            by_tooth = _by_tooth(cells, common)
+            by_tooth = scan.shares(free @ fitted.amplitudes[-free.shape[1] :])
             fitted = scan.robust(columns, by_tooth, settled=0.0)
             made, own = np.split(fitted.amplitudes, [columns.shape[1]])
-            residual = fit.target - columns @ made - by_tooth.times(own)
-            use = fitted.weight > 0.0
+            residual = scan.on_all(fit.target[scan.rows] - columns @ made - by_tooth.times(own))
+            use = scan.on_all(fitted.weight) > 0.0
             covariance = estimate_covariance(cells, residual, use, noise)
             unit = design_unit(fit.dictionary, use, covariance)
             scan = cls(replace(fit, covariance=covariance), replace(problem, unit=unit), sound)
         return scan
 
-    def robust(
-        self, *blocks: Floats | CellColumns, losses: int = 0, settled: float = SETTLED, first: Floats | None = None
-    ) -> Robust:
-        """The robust fit of blocks of columns side by side, until its sum of squares changes by less than a part of `close`.
+    @cached_property
+    def rows(self) -> Ints:
+        """The cells that a fit may use."""
+        return np.flatnonzero(self.sound)
 
-        The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations. It may begin with the weights (m,) that
-        a poorer fit ended with: a deep place of one flank would draw a share of its own at `first`.
-        """
-        target, known = self.fit.target, np.where(self.sound, self.fit.covariance.weight, 0.0)
-        root = np.sqrt(known[self.sound])
-        cuts = cuts_of(self.fit.cells.grid)
-        own = CellColumns.side_by_side([one if isinstance(one, CellColumns) else CellColumns.of(one, cuts) for one in blocks])
-        free, bounded = np.split(np.arange(own.count), [own.count - losses])
-        weight, fold, std = (
-            known.copy() if first is None else first.copy(),
-            np.zeros(len(known), np.int64),
-            np.full(own.count, np.nan),
-        )
-        for wide in (True, False) if first is None else (False,):  # what lies far off at first may be the whole of a side
-            before = np.inf
-            for _ in range(PASSES):
-                gram = Gram.of((own,), target, weight, fold, 1)
-                amplitudes = gram.solve_non_negative(free, bounded) if losses else gram.amplitudes(free)
-                residual = (target - own.times(amplitudes))[self.sound] * root
-                spread = max(scale_about(residual), 1.0) if wide else 1.0
-                weight[self.sound] = known[self.sound] * tukey_weight(residual, spread)
-                square = float(np.minimum(residual**2, rules().close).sum())
-                if abs(square - before) < settled * rules().close:
-                    break
-                before = square
-        if not losses:
-            std = np.sqrt(np.diag(gram.solve(free)[1]))
-        return Robust(weight, amplitudes, std, square)
+    def columns(self, model: Model) -> Floats:
+        """Columns of the pose and of a model, on the cells that a fit may use."""
+        which = np.concatenate([self.fit.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
+        return self.fit.dictionary.take(which, self.rows)
+
+    def robust(
+        self,
+        columns: Floats,
+        shares: Shares | None = None,
+        losses: int = 0,
+        settled: float = SETTLED,
+        first: Floats | None = None,
+    ) -> Robust:
+        """`robust_fit` on the cells that a fit may use."""
+        known = self.fit.covariance.weight[self.rows]
+        return robust_fit(self.fit.target[self.rows], known, columns, shares, losses, settled, first)
+
+    def shares(self, loss: Floats) -> Shares:
+        """A loss (n,) with a share of its own on every flank."""
+        points = self.fit.cells.points
+        return Shares.of(loss, (points.tooth.astype(np.int64) * 2 + (points.side > 0))[self.rows])
+
+    def on_all(self, values: Floats) -> Floats:
+        """Values (n,) of the cells that a fit may use, and 0 on the others, (m,)."""
+        result = np.zeros(len(self.sound))
+        result[self.rows] = values
+        return result
 
     def made_cost(self, model: Model, free: Floats, price: Floats) -> float:
         """Of the best model beside what is needed of some columns (m, k) that flanks were made with, at the price (k,) of each."""
-        fitted = self.robust(self.fit.columns(model), free)
+        seen = free[self.rows]
+        fitted = self.robust(np.hstack([self.columns(model), seen]))
         if free.shape[1]:
             model = self._searched(model, free, fitted.weight)  # what stood in for it need not stay
-        needed = self._needed(model, free, price, fitted.weight)
+        needed = self._needed(model, seen, price, fitted.weight)
         model = self._searched(model, free[:, needed], fitted.weight)
-        needed = self._needed(model, free, price, fitted.weight)
-        fitted = self.robust(self.fit.columns(model), free[:, needed])
+        needed = self._needed(model, seen, price, fitted.weight)
+        fitted = self.robust(np.hstack([self.columns(model), seen[:, needed]]))
         paid = rules().effect_penalty + float(price[needed].sum()) if len(needed) else 0.0
         return fitted.square / self.problem.unit + self._named(model) + paid
 
     def _needed(self, model: Model, free: Floats, price: Floats, weight: Floats) -> Ints:
         """Which of some columns gain more beside a model than they cost, one after the other."""
-        beside = self.fit.columns(model)
-        both = CellColumns.of(np.hstack([beside, free]), cuts_of(self.fit.cells.grid))
-        gram = Gram.of((both,), self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
-        base, first = np.arange(both.count - free.shape[1]), beside.shape[1]
-        chosen, rest = np.zeros(0, np.int64), np.arange(free.shape[1])
+        own, count = self.columns(model), free.shape[1]
+        gram = Gram.whole(np.hstack([own, free]), self.fit.target[self.rows], weight)
+        at = own.shape[1] + np.arange(count)
+        beside = gram.beside(np.arange(own.shape[1]), list(at[:, None]))
+        chosen, rest = np.zeros(0, np.int64), np.arange(count)
         while len(rest):
-            worth = (
-                gram.gains(np.concatenate([base, first + chosen]), list(first + rest[:, None])) / self.problem.unit - price[rest]
-            )
+            worth = beside.tried(at[chosen][None])[1][0][rest] / self.problem.unit - price[rest]
             best = int(np.argmax(worth))
             if worth[best] <= 0.0:
                 break
@@ -261,21 +241,24 @@ class _Scan:
         """
         by_scanner = tuple(candidate for candidate in model if candidate.effect.kind is Kind.MEASUREMENT)
         fewer = {_columns_of(start): start for start in (self._known(by_scanner), self._known(()))}
-        starts = [model, *(start for start in fewer.values() if len(start) < len(model))]
-        costs = [cost for start in starts for cost in self._costs_from(start, worn, law, sides)]
+        # One set of weights tells all of them which cells to believe: those that the richest ends with.
+        wide, gram = self._beside(law, self._losses(model, law, sides)[2].weight)
+        added, tried, costs = np.arange(wide.count - law.shape[1], wide.count), dict[bytes, Around](), list[float]()
+        for start in [model, *(start for start in fewer.values() if len(start) < len(model))]:
+            beside = self.problem.columns(start)
+            kept = gram.solve_non_negative(beside, added)[len(beside) :] > 0.0
+            if _lost_on(sides[kept]) != worn:
+                continue
+            if kept.tobytes() not in tried:
+                tried[kept.tobytes()] = Around(self._problem(wide, gram, added[kept]), {}, {}, {})
+            around = tried[kept.tobytes()]
+            searched, least = exchange(around.problem, start, around), np.ascontiguousarray(law[:, kept])
+            # Shapes that are richer than what is lost end at the same columns.
+            key = _columns_of(searched), hashlib.sha256(least.tobytes()).digest() + sides[kept].tobytes()
+            if key not in self._worn:
+                self._worn[key] = self._costs_of(searched, worn, least, sides[kept])
+            costs += self._worn[key]
         return min(costs, default=None)
-
-    def _costs_from(self, start: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
-        """The same from one start: with the same loss on all teeth, and with a share of it on each."""
-        law, sides, fitted = self._losses(start, law, sides)
-        if _lost_on(sides) != worn:
-            return []
-        searched = self._searched(start, law, fitted.weight)
-        # Shapes that are richer than what is lost end at the same columns.
-        key = _columns_of(searched), hashlib.sha256(law.tobytes()).digest() + sides.tobytes()
-        if key not in self._worn:
-            self._worn[key] = self._costs_of(searched, worn, law, sides)
-        return self._worn[key]
 
     def _costs_of(self, searched: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
         """Costs of a model beside losses of some shapes: with the same on all teeth, and with a share of it on each."""
@@ -288,10 +271,11 @@ class _Scan:
         if self.unworn_cost(searched) - common < rules().close:
             return []
         # Every tooth may have lost more or less of the same, but hardly any nothing.
-        by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
-        alone = self.robust(self.fit.columns(searched), by_tooth, first=fitted.weight)
-        searched = self._searched(searched, by_tooth, alone.weight)
-        alone = self.robust(self.fit.columns(searched), by_tooth, first=alone.weight)
+        loss = law @ fitted.amplitudes[-law.shape[1] :]
+        by_tooth = self.shares(loss[self.rows])
+        alone = self.robust(self.columns(searched), by_tooth, first=fitted.weight)
+        searched = self._searched(searched, _by_tooth(self.fit.cells, loss), alone.weight)
+        alone = self.robust(self.columns(searched), by_tooth, first=alone.weight)
         last = slice(len(alone.amplitudes) - by_tooth.count, None)
         share = alone.amplitudes[last]
         if float((share <= 0.0).mean()) > rules().blank_flanks:
@@ -309,7 +293,7 @@ class _Scan:
         """Of the effects of a model without any loss."""
         key = _columns_of(model)
         if key not in self._unworn:
-            self._unworn[key] = self.robust(self.fit.columns(model)).square / self.problem.unit + self._named(model)
+            self._unworn[key] = self.robust(self.columns(model)).square / self.problem.unit + self._named(model)
         return self._unworn[key]
 
     def _named(self, model: Model) -> float:
@@ -318,19 +302,26 @@ class _Scan:
 
     def _losses(self, model: Model, law: Floats, sides: Ints) -> tuple[Floats, Ints, Robust]:
         """The columns that take metal away beside a model, their sides, and the fit with them."""
-        beside = self.fit.columns(model)
-        fitted = self.robust(beside, law, losses=law.shape[1])
+        beside = self.columns(model)
+        fitted = self.robust(np.hstack([beside, law[self.rows]]), losses=law.shape[1])
         kept = fitted.amplitudes[beside.shape[1] :] > 0.0
         amplitudes = fitted.amplitudes[np.concatenate([np.ones(beside.shape[1], dtype=np.bool_), kept])]
         return law[:, kept], sides[kept], replace(fitted, amplitudes=amplitudes)
 
     def _searched(self, model: Model, law: Floats | CellColumns, weight: Floats) -> Model:
         """The model after exchange beside the law."""
-        dictionary = self.fit.dictionary
-        wide = dictionary.with_columns(law)
-        wide = replace(wide, pose=np.concatenate([dictionary.pose, np.arange(dictionary.count, wide.count)]))
-        gram = Gram.of(wide.blocks, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
-        return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
+        wide, gram = self._beside(law, weight)
+        return exchange(self._problem(wide, gram, np.arange(self.fit.dictionary.count, wide.count)), model)
+
+    def _beside(self, law: Floats | CellColumns, weight: Floats) -> tuple[Dictionary, Gram]:
+        """The dictionary with a law behind it, and the sums of both at some weights (n,)."""
+        wide = self.fit.dictionary.with_columns(law)
+        return wide, Gram.of(wide.blocks, self.fit.target, self.on_all(weight), np.zeros(len(self.sound), np.int64), 1)
+
+    def _problem(self, wide: Dictionary, gram: Gram, lost: Ints) -> Problem:
+        """The search beside some columns of a law, which are in every fit as the pose is."""
+        with_law = replace(wide, pose=np.concatenate([wide.pose, lost]))
+        return Problem(with_law, gram, self.problem.unit, self.problem.context, self.problem.always)
 
 
 def _columns_of(model: Model) -> tuple[int, ...]:

@@ -144,6 +144,11 @@ def test_a_fit_beside_what_is_always_in_is_the_fit_on_both(seed):
     assert square == pytest.approx(gram.residual_square(both), rel=1e-9)
     assert beside.fit(np.arange(0))[1] == pytest.approx(gram.residual_square(always), rel=1e-9)
     candidates = [np.array([i]) for i in range(columns.shape[1])] + [np.array([0, 2])]
-    gains = beside.gains(which[:1], beside.blocks(candidates), len(candidates))
-    np.testing.assert_allclose(gains, gram.gains(both[:3], candidates), rtol=1e-6)
-    assert (gains[[0, 1, 3]] == 0.0).all()
+    tried = gram.beside(always, candidates)
+    squares, gains = tried.tried(np.array([[3], [2]]))
+    for i, one in enumerate((3, 2)):
+        base = np.array([*always, one])
+        np.testing.assert_allclose(gains[i], gram.gains(base, candidates), rtol=1e-6)
+        assert squares[i] == pytest.approx(gram.residual_square(base), rel=1e-9)
+    assert (gains[0][[0, 1, 3]] == 0.0).all()
+    np.testing.assert_allclose(tried.beside(which[:1]).tried(np.array([[2]]))[1], tried.tried(np.array([[3, 2]]))[1], rtol=1e-6)

@@ -1,0 +1,192 @@
+"""What columns hold beside others, and what each of many candidates would gain in many fits at once.
+
+A search asks the same of one problem thousands of times: by how much does each candidate lower the sum of squares beside these columns, or those? All
+such fits of one size are solved together. A candidate of many columns, a freedom for every tooth, is brought to columns square to each other once; beside a
+few others only these few are solved for (Woodbury 1950).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+
+RIDGE = 1e-9
+"""Relative to the column's own sum: keeps exactly collinear columns solvable; they gain nothing by it."""
+SPANNED = 1e-6
+"""Share of a column's own square below which nothing of it is left beside others."""
+MANY = 8
+"""Columns from which on a candidate is one of many: a freedom for every tooth; numerical."""
+NOTHING = -1
+"""In place of a column where a fit has fewer of them than others that are solved with it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Candidates of one number of columns.
+
+    Parameters
+    ----------
+    at : (n,) int
+        Which candidates.
+    which : (n, size) int
+        The columns of each that anybody sees: what nobody sees neither helps nor hinders.
+    """
+
+    at: Ints
+    which: Ints
+
+
+@dataclass(frozen=True)
+class Beside:
+    """The sums of columns without what others span of them: a fit on them is the fit on both (Frisch and Waugh 1933, Lovell 1963).
+
+    So what is in every fit is solved for once, and a search goes on with the few columns that it tries.
+
+    Parameters
+    ----------
+    information : (p, p) float
+    moment : (p,) float
+    square : float
+        Weighted sum of squares that the others leave.
+    own : (p,) float
+        Weighted squares of the whole columns; by these the ridge is measured.
+    candidates : tuple of (k,) int
+        Columns of each that is tried.
+    """
+
+    information: Floats
+    moment: Floats
+    square: float
+    own: Floats
+    candidates: tuple[Ints, ...] = ()
+
+    @cached_property
+    def _blocks(self) -> tuple[Block, ...]:
+        """The candidates in groups of one size."""
+        seen = [columns[self.own[columns] > 0.0] for columns in self.candidates]
+        sizes = np.array([len(columns) for columns in seen], dtype=np.int64)
+        groups = []
+        for size in np.unique(sizes[sizes > 0]):
+            at = np.flatnonzero(sizes == size)
+            groups.append(Block(at, np.array([seen[i] for i in at])))
+        return tuple(groups)
+
+    @cached_property
+    def _squared(self) -> dict[int, tuple[Floats, Floats]]:
+        """Of each candidate of many columns: the sums of all columns with its own, (p, k), after these are made square to each other and of length 1,
+        and their moment, (k,)."""
+        result = {}
+        for block in self._blocks:
+            for at, which in zip(block.at.tolist(), block.which, strict=True):
+                if len(which) < MANY:
+                    continue
+                length = np.sqrt(self.own[which])
+                scaled = self.information[which[:, None], which] / (length[:, None] * length)
+                way = _to_unit(scaled) / length[:, None]
+                result[at] = _and_nothing(self.information[:, which] @ way), self.moment[which] @ way
+        return result
+
+    @cached_property
+    def _rows(self) -> tuple[Floats, Floats, Floats]:
+        """Information, moment and own squares with a row of zeros behind them, which is `NOTHING`'s."""
+        return _and_nothing(self.information), _and_nothing(self.moment), _and_nothing(self.own)
+
+    def solve(self, which: Ints) -> tuple[Floats, Floats]:
+        """Amplitudes and inverse information of the fit on columns `which` beside the others."""
+        scaled, root = self._scaled(which)
+        inverse = np.linalg.inv(scaled) / (root[:, None] * root)
+        return inverse @ self.moment[which], inverse
+
+    def fit(self, which: Ints) -> tuple[Floats, float]:
+        """Amplitudes of the fit on columns `which`, and the weighted sum of squares that it leaves."""
+        if len(which) == 0:
+            return np.zeros(0), self.square
+        scaled, root = self._scaled(which)
+        amplitudes = np.linalg.solve(scaled, self.moment[which] / root) / root
+        return amplitudes, float(self.square - amplitudes @ self.moment[which])
+
+    def _scaled(self, which: Ints) -> tuple[Floats, Floats]:
+        """The information of columns `which` in the lengths of the whole columns, with the ridge; and these lengths."""
+        root = np.sqrt(self.own[which])
+        root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
+        scaled = self.information[which[:, None], which] / (root[:, None] * root)
+        return scaled + RIDGE * np.eye(len(which)), root
+
+    def beside(self, which: Ints) -> Beside:
+        """The same beside columns `which` too."""
+        scaled, root = self._scaled(which)
+        across = self.information[which] / root[:, None]
+        spanned = np.linalg.solve(scaled, np.column_stack([across, self.moment[which] / root]))
+        moment = self.moment - across.T @ spanned[:, -1]
+        square = float(self.square - (self.moment[which] / root) @ spanned[:, -1])
+        return Beside(self.information - across.T @ spanned[:, :-1], moment, square, self.own, self.candidates)
+
+    def tried(self, bases: Ints) -> tuple[Floats, Floats]:
+        """Of each of some fits on columns `bases` (n, k), some of them `NOTHING`, the weighted sum of squares that it leaves, (n,), and the fall of it
+        when each of the candidates is added, (n, candidates)."""
+        count, (information, moments, own_squares) = len(bases), self._rows
+        root = np.sqrt(own_squares[bases])
+        root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
+        across, aim = information[bases] / root[..., None], moments[bases] / root
+        scaled = np.take_along_axis(across, np.maximum(bases, 0)[:, None, :], axis=2) / root[:, None, :]
+        scaled *= (bases != NOTHING)[:, None, :]
+        scaled += RIDGE * np.eye(bases.shape[1])
+        inverse = np.linalg.inv(scaled)
+        spanned, amplitudes = inverse @ across, (inverse @ aim[..., None])[..., 0]
+        rest = self.moment - (amplitudes[:, None] @ across)[:, 0]
+        left = np.diag(self.information) - (spanned * across).sum(axis=1)
+        good = left >= SPANNED * self.own  # a column that the base already spans has nothing left: no gain from rounding
+        gains = np.zeros((count, len(self.candidates)))
+        for block in self._blocks:
+            which = block.which
+            fine, size = good[:, which].all(axis=2), which.shape[1]
+            if size >= MANY:
+                for place, at in enumerate(block.at.tolist()):
+                    sums, moment = self._squared[at]
+                    own = sums[bases] / root[..., None]
+                    beyond = moment - (amplitudes[:, None] @ own)[:, 0]
+                    inner, mixed = scaled - own @ own.swapaxes(1, 2), own @ beyond[..., None]
+                    inner[:, np.arange(bases.shape[1]), np.arange(bases.shape[1])] += RIDGE
+                    back = (mixed * np.linalg.solve(inner, mixed)).sum(axis=(1, 2))
+                    gains[:, at] = np.where(fine[:, place], (beyond**2).sum(axis=1) + back, 0.0)
+                continue
+            value = np.zeros(fine.shape)
+            if size == 1:
+                np.divide(rest[:, which[:, 0]] ** 2, left[:, which[:, 0]] * (1.0 + RIDGE), out=value, where=fine)
+            elif size == 2:
+                one, other = which.T
+                mixed = self.information[one, other] - (spanned[:, :, one] * across[:, :, other]).sum(axis=1)
+                a, b = left[:, one] * (1.0 + RIDGE), left[:, other] * (1.0 + RIDGE)
+                by = rest[:, one] ** 2 * b - 2.0 * rest[:, one] * rest[:, other] * mixed + rest[:, other] ** 2 * a
+                np.divide(by, a * b - mixed**2, out=value, where=fine)
+            else:
+                part = self.information[which[:, :, None], which[:, None, :]] - np.einsum(
+                    "nbms,nbmt->nmst", spanned[:, :, which], across[:, :, which]
+                )
+                part = part[fine] + RIDGE * left[:, which][fine][:, :, None] * np.eye(size)
+                beyond = rest[:, which][fine]
+                value[fine] = (beyond * np.linalg.solve(part, beyond[..., None])[..., 0]).sum(axis=1)
+            gains[:, block.at] = value
+        return self.square - (amplitudes * aim).sum(axis=1), gains
+
+
+def _to_unit(information: Floats) -> Floats:
+    """(k, q) mixtures of columns, of this information (k, k), that are square to each other and of length 1; none of what is spanned already."""
+    try:
+        root = np.linalg.cholesky(information + RIDGE * np.eye(len(information)))
+        if np.diag(root).min() ** 2 > SPANNED:
+            return np.asarray(np.linalg.inv(root).T, dtype=np.float64)
+    except np.linalg.LinAlgError:
+        pass
+    value, vector = np.linalg.eigh(information)
+    left = value > SPANNED
+    return np.asarray(vector[:, left] / np.sqrt(value[left]), dtype=np.float64)
+
+
+def _and_nothing(values: Floats) -> Floats:
+    """Values (p, …) with a row of zeros behind them."""
+    return np.concatenate([values, np.zeros((1, *values.shape[1:]))])

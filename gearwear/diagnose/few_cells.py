@@ -1,0 +1,76 @@
+"""A fit on fewer cells: neighbours along z put together, for a question that needs no more.
+
+Which sides are worn throughout is told by a profile that all flanks of a side share, and by how much of it each has: means over many teeth, smooth along
+z. Columns and deviations are averaged alike, so that a fit loses nothing but what goes up and down within a cell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from gearwear.arrays import Bools, Floats
+from gearwear.diagnose.columns import CellColumns, cuts_of
+from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.fit import Fit
+from gearwear.placing.cells import CellGrid, cells_of
+
+ENOUGH_CELLS = 10_000
+"""Cells beyond which rows are put together."""
+FEWEST_ROWS = 5
+"""Rows that are left."""
+TOGETHER = 64
+"""Columns that are averaged at a time; numerical."""
+
+
+def few_rows(grid: CellGrid) -> CellGrid:
+    """The grid with so many rows put together, always as many, that few cells are left; itself where they are few."""
+    few = grid
+    for together in range(2, grid.rows // FEWEST_ROWS + 1):
+        if few.count <= ENOUGH_CELLS:
+            break
+        few = replace(grid, rows=grid.rows // together)
+    return few
+
+
+def on_few_cells(fit: Fit, sound: Bools, noise: float) -> tuple[Fit, Bools]:
+    """A fit on few cells, and which of these (m,) have anything in them.
+
+    Parameters
+    ----------
+    fit : Fit
+    sound : (m,) bool
+        Cells that a fit may use: the others come into none.
+    noise : float
+        Scatter of points, mm.
+    """
+    grid = few_rows(fit.cells.grid)
+    if grid is fit.cells.grid:
+        return fit, sound
+    rows = np.flatnonzero(sound)
+    into = np.full(len(sound), -1, dtype=np.int64)
+    into[rows] = grid.index(fit.cells.points.take(rows))
+    cells = cells_of(fit.cells.sums.gathered(into, grid.count), grid)
+    share = fit.cells.count[rows] / cells.count[into[rows]]
+    mean = csr_matrix((share, (into[rows], rows)), shape=(grid.count, len(sound)))
+    dictionary, known = fit.dictionary, fit.covariance
+
+    def averaged() -> Iterator[Floats]:
+        for start in range(0, dictionary.count, TOGETHER):
+            yield mean @ dictionary.take(np.arange(start, min(start + TOGETHER, dictionary.count)))
+
+    columns = CellColumns.gathered(averaged(), cuts_of(grid), TOGETHER)
+    together = fit.cells.grid.rows // grid.rows
+    apart = np.abs(np.subtract.outer(np.arange(together), np.arange(together)))
+    covariance = CellCovariance(
+        grid,
+        noise**2 / np.maximum(cells.count, 1.0),
+        known.texture * float((known.row_step**apart).mean()),
+        known.row_step**together,
+        known.column_step,
+    )
+    few = replace(dictionary, first=columns, more=())
+    return Fit(cells, mean @ fit.target, few, cells.seen, covariance), cells.seen
