@@ -29,7 +29,7 @@ from gearwear.diagnose.masks import not_stray, sound_cells, whole_flanks, worn_m
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
-from gearwear.diagnose.worn_sides import NO_SIDE, side_costs
+from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 
@@ -78,7 +78,6 @@ def close_loop(
     root_free: bool = False,
     worn: frozenset[Side] | None = None,
     out: Bools | None = None,
-    decided: tuple[frozenset[Side], ...] = (),
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -98,8 +97,6 @@ def close_loop(
         Sides that are known to be worn throughout; None: the scan decides.
     out : (m,) bool or None
         Cells that a look at fewer cells left out because they look worn (`left_out`): the search begins without them.
-    decided : tuple of frozenset of Side
-        What such a look decided, and then what it did not exclude; empty where there was none.
 
     Returns
     -------
@@ -113,22 +110,19 @@ def close_loop(
     def searched_without(sides: frozenset[Side]) -> Searched:
         return _first_search(cells, noise, replace(context, worn=sides), made, always, out)
 
-    if worn is not None:
-        decided = (worn,)
-    plain = searched_without(decided[0] if decided else NO_SIDE)
-    if not decided:
-        costs = side_costs(plain.fit, plain.problem, plain.model, noise)
-        decided = costs.chosen, *costs.not_excluded
+    plain = searched_without(worn or NO_SIDE)
+    known = SideCosts({plain.worn: 0.0})
+    costs = known if worn is not None else side_costs(plain.fit, plain.problem, plain.model, noise)
 
     def explained(sides: frozenset[Side]) -> Loop:
         return _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
 
-    taken = explained(decided[0])
+    taken = explained(costs.chosen)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
     refuted = worn is None and _refuted(taken, cells, flanks)
     if refuted:
         taken = explained(frozenset(Side))
-    others = () if refuted else tuple(explained(sides) for sides in decided[1:])
+    others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
     named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
     if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
         named = tuple(_or_smoothing(effect) for effect in named)
