@@ -492,8 +492,8 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
             if rest is not None:
                 pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
         edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(pooled.fillet_edges.tolist()))
-        out, decided = (None, ()) if look is None else (left_out(*look, pooled), (look[0].worn_sides, *look[0].undecided))
-        return close_loop(pooled, noise, edges, None, not measured.root.fits_design, worn, out, decided), pooled
+        out = None if look is None else left_out(*look, pooled)
+        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design, worn=worn, out=out), pooled
 
     def explained(cells: Cells, located: SurfacePoints, rest: SurfacePoints | None = None, look: Look | None = None) -> Loop:
         """The loop closed on as many cells as it needs."""

@@ -30,7 +30,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.diagnose.worn_flanks import worn_flanks
-from gearwear.diagnose.worn_sides import NO_SIDE, side_costs
+from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 
@@ -79,7 +79,6 @@ def close_loop(
     root_free: bool = False,
     worn: frozenset[Side] | None = None,
     out: Bools | None = None,
-    decided: tuple[frozenset[Side], ...] = (),
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -99,8 +98,6 @@ def close_loop(
         Sides that are known to be worn throughout; None: the scan decides.
     out : (m,) bool or None
         Cells that a look at fewer cells left out because they look worn (`left_out`): the search begins without them.
-    decided : tuple of frozenset of Side
-        What such a look decided, and then what it did not exclude; empty where there was none.
 
     Returns
     -------
@@ -116,29 +113,26 @@ def close_loop(
     def searched_without(sides: frozenset[Side]) -> Searched:
         return _first_search(cells, noise, replace(context, worn=sides), made, always, out, apart)
 
-    if worn is not None:
-        decided = (worn,)
-    plain = searched_without(decided[0] if decided else NO_SIDE)
+    plain = searched_without(worn or NO_SIDE)
     low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
     if _still_in(plain, low):
         apart = cells.grid.on_flanks(low)
         plain = searched_without(plain.worn)
-    if not decided:
-        # Whether a side is worn throughout the others tell.
-        others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
-        costs = side_costs(others_alone, plain.problem, plain.model, noise)
-        decided = costs.chosen, *costs.not_excluded
+    known = SideCosts({plain.worn: 0.0})
+    # Whether a side is worn throughout the others tell.
+    others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
+    costs = known if worn is not None else side_costs(others_alone, plain.problem, plain.model, noise)
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
         return replace(loop, worn_flanks=low if apart.any() else None)
 
-    taken = explained(decided[0])
+    taken = explained(costs.chosen)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
     refuted = worn is None and _refuted(taken, cells, flanks)
     if refuted:
         taken = explained(frozenset(Side))
-    others = () if refuted else tuple(explained(sides) for sides in decided[1:])
+    others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
     named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
     if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
         named = tuple(_or_smoothing(effect) for effect in named)

@@ -33,6 +33,7 @@ def test_a_fit_on_few_cells_is_left_as_it_is(fit):
 def test_what_columns_explain_they_explain_on_fewer_cells(fit, monkeypatch):
     """Means are linear: the same amplitudes leave nothing there either, and all points are in."""
     monkeypatch.setattr(few_cells, "ENOUGH_CELLS", LEAST)
+    monkeypatch.setattr(few_cells, "FEWEST_ROWS", 3)
     sound = fit.cells.seen & (fit.cells.points.tooth != 4)
     few, there = few_cells.on_few_cells(fit, sound, 0.01)
     assert few_cells.FEWEST_ROWS <= few.cells.grid.rows <= fit.cells.grid.rows // 2
