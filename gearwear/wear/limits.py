@@ -168,7 +168,7 @@ def faint_wear(sheets: SideMaps, looked_at: Bools, noise: float, spread: float) 
 
 
 def faint_sides(cells: Cells, noise: float, loop: Loop, found: Bools, area: Floats) -> float:
-    """What wear of whole sides too faint to be told from how they were made may come to in all, at most (95 %), mm³.
+    """What sides that seem to have lost by sliding, but may as well be made so, would have lost in all, at most (95 %), mm³.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def faint_sides(cells: Cells, noise: float, loop: Loop, found: Bools, area: Floa
 
         g = W p / ℓᵀ W p,   p = ℓ − X (XᵀWX)⁻¹ XᵀW ℓ,
 
-    and to it what effects trusted too far, or too small to be found, leave along g. Less than nothing is none; sides err by themselves.
+    and to it what effects trusted too far, or too small to be found, leave along g. What is no more than chance (95 %) is none; sides err by themselves.
     """
     known = loop.covariance
     covariance = CellCovariance(
@@ -216,9 +216,11 @@ def faint_sides(cells: Cells, noise: float, loop: Loop, found: Bools, area: Floa
                 continue
             volume = -float(shape @ areas) / response
             variance = float(own @ covariance.apply(own[:, None])[:, 0]) + float(((own @ form) ** 2).sum())
-            limits.append((volume * float(own @ deviation), abs(volume) * math.sqrt(variance)))
+            value, std = volume * float(own @ deviation), abs(volume) * math.sqrt(variance)
+            if value > COVERAGE * std:
+                limits.append((value, std))
         value, std = max(limits, key=lambda limit: limit[0] + COVERAGE * limit[1], default=(0.0, 0.0))
-        lost, square = lost + max(value, 0.0), square + std**2
+        lost, square = lost + value, square + std**2
     return lost + COVERAGE * math.sqrt(square)
 
 
