@@ -117,7 +117,7 @@ class Explained:
     low: tuple[int, ...] = ()
 
     @cached_property
-    def _with_own(self) -> Fitted:
+    def _with_own(self) -> FittedLevels:
         """With a depth of its own on every one of the low flanks."""
         return _fitted(self.levels, self._columns, self._own)
 
@@ -192,7 +192,7 @@ class Explained:
 
 
 @dataclass(frozen=True)
-class Fitted:
+class FittedLevels:
     """A fit of levels with the scatter of the teeth that it leaves.
 
     Parameters
@@ -225,7 +225,7 @@ def _scattered(rest: Floats, wide: int) -> Floats:
     return np.asarray(len(by_tooth) * np.linalg.slogdet(moments)[1])
 
 
-def _fitted(levels: Levels, columns: Floats, own: Floats) -> Fitted:
+def _fitted(levels: Levels, columns: Floats, own: Floats) -> FittedLevels:
     """Least squares with the covariance of the levels of a tooth that is left over, not below what noise makes of them."""
     every, number = np.hstack([columns, own, levels.value[:, None]]), levels.count
     free = number - 0.5 * (every.shape[1] - 1)
@@ -243,7 +243,7 @@ def _fitted(levels: Levels, columns: Floats, own: Floats) -> Fitted:
         scatter, root = (axes * kept) @ axes.T, (axes / np.sqrt(kept)).T
         misfit = float((number * np.log(kept) + number * size / kept).sum())
     lost, rest = tuple(solved[columns.shape[1] :].tolist()), levels.value - columns @ solved[: columns.shape[1]]
-    return Fitted(misfit, lost, rest, scatter, root)
+    return FittedLevels(misfit, lost, rest, scatter, root)
 
 
 def _choice(levels: Levels, places: Ints) -> float:
