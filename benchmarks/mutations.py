@@ -72,8 +72,7 @@ MUTATIONS = [
         ("diagnose/effects/root_form.py", "LOWER_END = 0.3", "LOWER_END = 0.6", "diagnose/test_root_form.py"),
         ("diagnose/worn_flanks.py", "MOST = 0.5", "MOST = 0.4", "diagnose/core/test_worn_flanks.py"),
         ("diagnose/worn_flanks.py", "without.cost - rules().close", "math.inf", "diagnose/core/test_worn_flanks.py"),
-        ("diagnose/worn_flanks.py", "rules().shape_price + rules().close", "rules().shape_price", "diagnose/core/test_worn_flanks.py"),
-        ("diagnose/worn_flanks.py", "min(self._with_own.lost, default=1.0) > 0.0", "True", "diagnose/core/test_worn_flanks.py"),
+        ("diagnose/worn_flanks.py", "any_of_them, 2.0 * _shape_price()", "any_of_them, any_of_them", "diagnose/core/test_worn_flanks.py"),
         ("diagnose/loop.py", "if _still_in(plain, low)", "if False", "diagnose/core/test_worn_flanks.py"),
         # fleet
         ("fleet/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),

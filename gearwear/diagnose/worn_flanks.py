@@ -72,19 +72,26 @@ class Levels:
     Parameters
     ----------
     teeth : (n,) int
+        Of so many `around`.
+    around : int
     value : (w n,) float
         Of each tooth in turn left and right flank, and with four left and right fillet, each in the standard deviation that its points' noise gives it.
     base : (w n, p) float
         What is free: the common level of each of these, and the pose.
     terms : tuple of Term
+        Effects of the catalogue.
+    nameless : tuple of Term
+        Waves without a cause: what may be there in place of worn flanks, not beside them.
     wide : int
         w: 2, or 4 with fillets, which an error of the scanner moves with their flanks, and wear does not.
     """
 
     teeth: Ints
+    around: int
     value: Floats
     base: Floats
     terms: tuple[Term, ...]
+    nameless: tuple[Term, ...]
     wide: int = 2
 
     @property
@@ -110,7 +117,7 @@ class Explained:
     low: tuple[int, ...] = ()
 
     @cached_property
-    def _with_own(self) -> Fitted:
+    def _with_own(self) -> FittedLevels:
         """With a depth of its own on every one of the low flanks."""
         return _fitted(self.levels, self._columns, self._own)
 
@@ -137,7 +144,9 @@ class Explained:
         same = _fitted(self.levels, self._columns, sides[:, numbers > 0])
         own_cost = self._with_own.misfit + free_penalty(len(self.low))
         same_cost = same.misfit + free_penalty(int((numbers > 0).sum()))
-        which = sum(_ways(self.levels.count, int(number)) for number in numbers)
+        which = sum(
+            _choice(self.levels, np.array(self.low)[halves == half] // self.levels.wide) for half in np.flatnonzero(numbers)
+        )
         return min(own_cost, same_cost if min(same.lost) > 0.0 else math.inf) + which + priced
 
     @property
@@ -164,19 +173,26 @@ class Explained:
         basis = np.linalg.qr(_white(np.hstack([self._columns, self._own]), fitted.root))[0]
         every = _white(np.hstack([levels.value[:, None], *(term.columns for term in levels.terms)]), fitted.root)
         every = every - basis @ (basis.T @ every)
-        rest, start = every[:, 0], 1
-        whole = max(float(rest @ rest), 1e-300)
+        rest = every[:, 0]
+        scattered = _scattered(rest[:, None], levels.wide)
         result = np.full(len(levels.terms), -math.inf)
-        for i, term in enumerate(levels.terms):
-            columns = every[:, start : (start := start + term.columns.shape[1])]
-            if i not in self.terms:
-                taken = float(rest @ (columns @ np.linalg.lstsq(columns, rest, rcond=1e-6)[0])) / whole
-                result[i] = -len(rest) * math.log(max(1.0 - taken, SHOWN)) - term.price
+        sizes = np.array([term.columns.shape[1] for term in levels.terms], dtype=np.int64)
+        starts = 1 + np.cumsum(sizes) - sizes
+        free = np.setdiff1d(np.arange(len(sizes)), self.terms)
+        for size in np.unique(sizes[free]):
+            some = free[sizes[free] == size]
+            columns = every[:, starts[some][:, None] + np.arange(size)]
+            gram = np.einsum("nti,ntj->tij", columns, columns)
+            moment = np.einsum("nti,n->ti", columns, rest)
+            gram += (RIDGE * np.trace(gram, axis1=1, axis2=2)[:, None, None] + 1e-300) * np.eye(size)
+            solved = np.linalg.solve(gram, moment[..., None])[..., 0]
+            left = rest[:, None] - np.einsum("nti,ti->nt", columns, solved)
+            result[some] = scattered - _scattered(left, levels.wide) - np.array([levels.terms[i].price for i in some])
         return result
 
 
 @dataclass(frozen=True)
-class Fitted:
+class FittedLevels:
     """A fit of levels with the scatter of the teeth that it leaves.
 
     Parameters
@@ -202,7 +218,14 @@ def _white(columns: Floats, root: Floats) -> Floats:
     return np.asarray(root @ columns.reshape(-1, len(root), columns.shape[1])).reshape(columns.shape)
 
 
-def _fitted(levels: Levels, columns: Floats, own: Floats) -> Fitted:
+def _scattered(rest: Floats, wide: int) -> Floats:
+    """n ln of the determinant of the covariance of what is left, (w n, t): (t,)."""
+    by_tooth = rest.reshape(-1, wide, rest.shape[1])
+    moments = np.einsum("nit,njt->tij", by_tooth, by_tooth) / len(by_tooth) + SHOWN * np.eye(wide)
+    return np.asarray(len(by_tooth) * np.linalg.slogdet(moments)[1])
+
+
+def _fitted(levels: Levels, columns: Floats, own: Floats) -> FittedLevels:
     """Least squares with the covariance of the levels of a tooth that is left over, not below what noise makes of them."""
     every, number = np.hstack([columns, own, levels.value[:, None]]), levels.count
     free = number - 0.5 * (every.shape[1] - 1)
@@ -220,12 +243,20 @@ def _fitted(levels: Levels, columns: Floats, own: Floats) -> Fitted:
         scatter, root = (axes * kept) @ axes.T, (axes / np.sqrt(kept)).T
         misfit = float((number * np.log(kept) + number * size / kept).sum())
     lost, rest = tuple(solved[columns.shape[1] :].tolist()), levels.value - columns @ solved[: columns.shape[1]]
-    return Fitted(misfit, lost, rest, scatter, root)
+    return FittedLevels(misfit, lost, rest, scatter, root)
 
 
-def _ways(count: int, number: int) -> float:
-    """2 ln of the ways to choose some of the flanks of a side."""
-    return 2.0 * float(gammaln(count + 1) - gammaln(number + 1) - gammaln(count - number + 1))
+def _choice(levels: Levels, places: Ints) -> float:
+    """What it costs which flanks of a side they are: 2 ln of the ways to choose as many; or step and start, where it is every so many of all, as where a
+    mate whose count has a factor in common meets them."""
+    number, count = len(places), levels.count
+    any_of_them = 2.0 * float(gammaln(count + 1) - gammaln(number + 1) - gammaln(count - number + 1))
+    steps = np.diff(levels.teeth[places], append=levels.teeth[places[0]] + levels.around)
+    return min(any_of_them, 2.0 * _shape_price()) if (steps == steps[0]).all() else any_of_them
+
+
+def _shape_price() -> float:
+    return rules().parameter_penalty * rules().shape_price
 
 
 def worn_flanks(fit: Fit, model: Model, sound: Bools, noise: float) -> Bools:
@@ -258,7 +289,8 @@ def low_flanks(levels: Levels) -> tuple[int, ...]:
     """Places in `levels.value` of the flanks that lie below what explains the others; none where all are explained as well without."""
     if levels.count < rules().pattern_teeth:
         return ()
-    without, beside = _cheapest(levels, flanks=False), _cheapest(levels, flanks=True)
+    every = replace(levels, terms=(*levels.terms, *levels.nameless))
+    without, beside = _cheapest(every, flanks=False), _cheapest(levels, flanks=True)
     for side in Side:  # chance makes some of a side the lowest
         other = replace(beside, low=tuple(i for i in beside.low if i % levels.wide != side.index))
         beside = other if other.cost < beside.cost + rules().close else beside
@@ -349,7 +381,7 @@ def _levels(fit: Fit, model: Model, sound: Bools, noise: float) -> Levels:
     seen, shapes = np.flatnonzero(seen & fillets if with_fillets else seen), shapes[: 1 + with_fillets]
     wide = 2 * len(shapes)
     if len(seen) < rules().pattern_teeth:
-        return Levels(seen, np.zeros(0), np.zeros((0, 0)), (), wide)
+        return Levels(seen, grid.gear.teeth, np.zeros(0), np.zeros((0, 0)), (), (), wide)
     use = [shape(sound)[seen] for shape in shapes]
     points = [np.where(one, shape(fit.cells.count)[seen], 0.0).sum(axis=(2, 3)) for one, shape in zip(use, shapes, strict=True)]
     std = np.repeat([math.sqrt(OF_MEAN / max(float(np.median(one)), 1.0)) * noise for one in points], 2)
@@ -383,18 +415,32 @@ def _levels(fit: Fit, model: Model, sound: Bools, noise: float) -> Levels:
             left = own - base @ (base.T @ own)
             if float((left**2).sum()) > SHOWN * float((own**2).sum()):
                 terms.append(Term(own, penalty(candidate)))
-    return Levels(seen, value, base, (*terms, *waves(seen, grid.gear.teeth, std)), wide)
+    return Levels(seen, grid.gear.teeth, value, base, tuple(terms), tuple(waves(seen, grid.gear.teeth, std)), wide)
 
 
 def waves(teeth: Ints, count: int, std: Floats) -> list[Term]:
-    """Waves round the gear (n teeth of so many) of every order, on both sides in the same or in the opposite sense, fillets with them or not: those on
-    one side are two of them. In units of `std`, (w,)."""
-    terms = []
-    for order in range(1, count // 2 + 1):
-        angle = 2.0 * np.pi * order * teeth / count
-        wave = np.column_stack([np.cos(angle), np.sin(angle)])[:, : 1 if 2 * order == count else 2]
-        price = free_penalty(wave.shape[1]) + rules().parameter_penalty * rules().shape_price + rules().close
-        for sign, follow in product((1.0, -1.0), (0.0, 1.0)[: len(std) // 2]):
-            sense = np.array([1.0, sign, follow, follow * sign])[: len(std)] / std * std[0]
-            terms.append(Term(np.repeat(wave, len(std), axis=0) * np.tile(sense, len(teeth))[:, None], price))
+    """Waves round the gear (n teeth of so many) of every order, on both sides in the same or in the opposite sense, by the angle of the tooth or of its
+    flanks; or two of them, as high on either side, and where, as they like, on one side alone too. Fillets with them or not; in units of `std`, (w,)."""
+    terms, pitch, wide = list[Term](), 2.0 * np.pi / count, len(std)
+    for order, follow in product(range(1, count // 2 + 1), (0.0, 1.0)[: wide // 2]):
+        place = np.array([1.0, 1.0, follow, follow])[:wide, None] / std[:, None] * std[0]
+
+        def wave(turn: float, order: int = order, place: Floats = place) -> Floats:
+            """(n, w, q) of flanks that are a quarter of a pitch off the middle of their tooth, or not."""
+            angle = order * pitch * (teeth[:, None] + turn * np.array([1.0, -1.0, 1.0, -1.0])[:wide])
+            both = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+            return np.asarray(place * (both[..., :1] if 2 * order == count and not turn else both))
+
+        sides = np.tile([[1.0], [-1.0]], (wide // 2, 1))
+        # What goes by the angle of the flanks, an index or an encoder, moves the fillets with them.
+        turns = (0.0, 0.25, -0.25) if follow or wide == 2 else (0.0,)
+        terms += [_wave_term(sense * wave(turn), 1) for sense in (1.0, sides) for turn in turns]
+        still = wave(0.0)
+        terms.append(_wave_term(np.concatenate([still * (sides > 0.0), still * (sides < 0.0)], axis=-1), 2))
     return terms
+
+
+def _wave_term(wave: Floats, number: int) -> Term:
+    """So many waves of one order, (n, w, q): each lacks a cause."""
+    more = (number - 1) * rules().effect_penalty + number * rules().close
+    return Term(wave.reshape(-1, wave.shape[-1]), free_penalty(wave.shape[-1]) + _shape_price() + more)

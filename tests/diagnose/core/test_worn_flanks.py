@@ -29,7 +29,7 @@ def levels(left: np.ndarray, right: np.ndarray) -> Levels:
         base[half::2] = np.column_stack([np.full(teeth, half == 0), np.full(teeth, half == 1), np.cos(normal), np.sin(normal)])
     value = np.column_stack([left, right]).ravel()
     basis = np.linalg.qr(base)[0]
-    return Levels(np.arange(teeth), value / NOISE, basis, tuple(waves(np.arange(teeth), teeth, np.full(2, NOISE))))
+    return Levels(np.arange(teeth), teeth, value / NOISE, basis, (), tuple(waves(np.arange(teeth), teeth, np.full(2, NOISE))))
 
 
 def scatter(
@@ -45,13 +45,21 @@ def places(teeth: np.ndarray, half: int) -> tuple[int, ...]:
     return tuple(sorted((2 * teeth + half).tolist()))
 
 
-@pytest.mark.parametrize(("teeth", "step"), [(24, 3), (20, 2), (36, 4), (25, 6), (18, 6)])
+@pytest.mark.parametrize(("teeth", "step"), [(24, 3), (36, 3), (36, 4), (25, 6), (18, 6)])
 @pytest.mark.parametrize("half", [0, 1])
 def test_every_so_many_flanks_of_a_side(teeth, step, half):
     """They could be waves of one side alone, which nothing makes."""
     sides, worn = scatter(teeth, teeth), np.arange(0, teeth - teeth % step, step)
     sides[half][worn] -= DEPTH
     assert low_flanks(levels(*sides)) == places(worn, half)
+
+
+@pytest.mark.parametrize("teeth", [20, 36])
+def test_every_second_flank_is_an_error_of_the_index_too_where_no_fillets_tell(teeth):
+    """Of half as many waves as teeth, whose nodes are the flanks of the other side: a quarter of a pitch off the middle of a tooth."""
+    left, right = scatter(teeth, teeth)
+    left[::2] -= DEPTH
+    assert low_flanks(levels(left, right)) == ()
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -71,9 +79,10 @@ def test_waves_of_both_sides_are_no_wear(order, sense):
     assert low_flanks(levels(left + wave, right + sense * wave)) == ()
 
 
-def test_a_wave_of_one_side_that_is_not_of_two_levels_is_no_wear():
+@pytest.mark.parametrize(("order", "phase"), [(5.0, 0.4), (8.0, 0.4), (2.0, 0.0)])
+def test_a_wave_of_one_side_that_is_not_of_two_levels_is_no_wear(order, phase):
     left, right = scatter(8, 24)
-    left += DEPTH * np.cos(2.0 * math.pi * 5.0 * np.arange(24) / 24 + 0.4)
+    left += DEPTH * np.cos(2.0 * math.pi * order * np.arange(24) / 24 + phase)
     assert low_flanks(levels(left, right)) == ()
 
 
