@@ -182,7 +182,7 @@ def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tupl
     contact = run.contact(run.side, block.tooth, block.angles)
     advance, radius, mate_radius = map(block.by_position, (contact.advance, contact.radius, contact.mate_radius))
     rolls = _roll(radius, run.driver.gear.base_radius), _roll(mate_radius, run.driven.gear.base_radius)
-    shifts = (run.shift(other, run.side, block.tooth, contact) for other in others)
+    shifts = run.shifts(others, run.side, block.tooth, contact)
     return advance, *rolls, block.near, *map(block.by_position, shifts)
 
 
