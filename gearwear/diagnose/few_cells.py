@@ -21,7 +21,7 @@ from gearwear.placing.cells import CellGrid, cells_of
 ENOUGH_CELLS = 10_000
 """Cells beyond which rows are put together."""
 FEWEST_ROWS = 8
-"""Rows that are left: with 6, what one place of a flank has lost spoils so much of it that a gear worn on both sides was taken for one worn on neither."""
+"""Rows that are left: with 6, what one place of a flank has lost spoils so much of it that of a gear worn on both sides one was not told as worn."""
 TOGETHER = 64
 """Columns that are averaged at a time; numerical."""
 
