@@ -16,20 +16,22 @@ from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.columns import CellColumns, cuts_of
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.fit import Fit
+from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import CellGrid, cells_of
 
 ENOUGH_CELLS = 10_000
 """Cells beyond which rows are put together."""
-FEWEST_ROWS = 8
-"""Rows that are left: with 6, what one place of a flank has lost spoils so much of it that of a gear worn on both sides one was not told as worn."""
 TOGETHER = 64
 """Columns that are averaged at a time; numerical."""
 
 
 def few_rows(grid: CellGrid) -> CellGrid:
-    """The grid with so many rows put together, always as many, that few cells are left; itself where they are few."""
+    """The grid with so many rows put together, always as many, that few cells are left; itself where they are few.
+
+    With 6 rows, what one place of a flank has lost spoils so much of it that of a gear worn on both sides one was not told as worn.
+    """
     few = grid
-    for together in range(2, grid.rows // FEWEST_ROWS + 1):
+    for together in range(2, grid.rows // rules().rows_of_sides + 1):
         if few.count <= ENOUGH_CELLS:
             break
         few = replace(grid, rows=grid.rows // together)

@@ -85,6 +85,23 @@ class Rules:
         "share of a flank that looks worn from which on none of it tells of pitch",
         off=1.0,
     )
+    most_worn: float = rule(
+        0.5,
+        "1",
+        "derived",
+        "share of the flanks of a side that may be worn apart from the others: what most flanks have is how they were made",
+        off=0.0,
+    )
+    known_flank: float = rule(
+        0.5, "usual cells", "tuned, scans not recorded", "share of the cells of a flank from which on its level is known", off=0.0
+    )
+    rows_of_sides: int = rule(
+        8,
+        "rows",
+        "tuned: family g of benchmarks/families",
+        "rows of cells that are left where sides worn throughout are chosen on fewer cells",
+        off=1_000_000,
+    )
     stray_scale: float = rule(
         2.0, "robust scales", "literature: Tukey biweight", "cells farther off than this times its cut-off are torn", off=math.inf
     )

@@ -27,12 +27,8 @@ from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import free_penalty, penalty
 
-MOST = 0.5
-"""Share of the flanks of a side that may lie below the others: what most flanks have is how they were made."""
 OF_MEAN = 0.5 * math.pi
 """Variance of a median of many values in that of their mean, for normal scatter."""
-FEWEST_CELLS = 0.5
-"""Share of the cells usual on a flank from which on its level is known."""
 ROUNDS = 6
 """Times that flanks and effects are chosen in turn, at most; numerical."""
 REWEIGHTED = 3
@@ -330,7 +326,7 @@ def _trimmed(levels: Levels, sides: tuple[Side, ...]) -> Explained:
 
 def _lowest(one: Explained, side: Side) -> list[int]:
     """The lowest flanks of a side, as many as may be worn, the lowest first."""
-    order = np.argsort(one.below[:, side.index], kind="stable")[: int(MOST * one.levels.count)]
+    order = np.argsort(one.below[:, side.index], kind="stable")[: int(rules().most_worn * one.levels.count)]
     most: list[int] = (order * one.levels.wide + side.index).tolist()
     return most
 
@@ -374,10 +370,10 @@ def _levels(fit: Fit, model: Model, sound: Bools, noise: float) -> Levels:
     grid, dictionary = fit.cells.grid, fit.dictionary
     shapes = [grid.flank_shape, grid.fillet_shape]
     number = [shape(sound).sum(axis=(2, 3)) for shape in shapes]
-    known = [(of > 0) & (of >= FEWEST_CELLS * np.median(of)) for of in number]
+    known = [(of > 0) & (of >= rules().known_flank * np.median(of)) for of in number]
     fillets = known[1].all(axis=1)
     seen = known[0].all(axis=1)
-    with_fillets = int((seen & fillets).sum()) >= max(rules().pattern_teeth, MOST * len(seen))
+    with_fillets = int((seen & fillets).sum()) >= max(rules().pattern_teeth, rules().most_worn * len(seen))
     seen, shapes = np.flatnonzero(seen & fillets if with_fillets else seen), shapes[: 1 + with_fillets]
     wide = 2 * len(shapes)
     if len(seen) < rules().pattern_teeth:

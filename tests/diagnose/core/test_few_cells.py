@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.loop import make_context
+from gearwear.diagnose.rules import RULES, in_force
 from tests.diagnose.core.test_worn_sides import binned
 
 LEAST = 3000
@@ -33,10 +36,10 @@ def test_a_fit_on_few_cells_is_left_as_it_is(fit):
 def test_what_columns_explain_they_explain_on_fewer_cells(fit, monkeypatch):
     """Means are linear: the same amplitudes leave nothing there either, and all points are in."""
     monkeypatch.setattr(few_cells, "ENOUGH_CELLS", LEAST)
-    monkeypatch.setattr(few_cells, "FEWEST_ROWS", 3)
     sound = fit.cells.seen & (fit.cells.points.tooth != 4)
-    few, there = few_cells.on_few_cells(fit, sound, 0.01)
-    assert few_cells.FEWEST_ROWS <= few.cells.grid.rows <= fit.cells.grid.rows // 2
+    with in_force(replace(RULES, rows_of_sides=3)):
+        few, there = few_cells.on_few_cells(fit, sound, 0.01)
+    assert 3 <= few.cells.grid.rows <= fit.cells.grid.rows // 2
     assert few.cells.count.sum() == pytest.approx(fit.cells.count[sound].sum())
     assert not there[few.cells.points.tooth == 4].any()
     amplitudes = np.random.default_rng(1).normal(size=fit.dictionary.count)
