@@ -12,13 +12,14 @@ import numpy as np
 from benchmarks.families import draws, effects
 from benchmarks.families.case import Case
 from benchmarks.families.draws import Rng, log_uniform
-from benchmarks.families.fields import EndRelief, Field, Polynomial, Relief, Ripple, RoundWave
-from benchmarks.families.instrument import AlongAxis, Between, OneSide, Outer, RoundGear, Sector, Turntable, Unseen
+from benchmarks.families.fields import EndRelief, Even, Field, Index, Polynomial, Relief, Ripple, RoundWave
+from benchmarks.families.instrument import AlongAxis, Between, Coat, OneSide, Outer, RoundGear, Sector, Turntable, Unseen
 from benchmarks.families.part import Part
 from benchmarks.families.rack import Tool
 from benchmarks.families.scanner import ViewError
 
 POINTS = 40_000
+STEPS = {0: "by chance", 2: "every second", 3: "every third", 4: "every fourth", 6: "every sixth"}
 MATES = 1.0 / 6.0
 """Share of the scans with sliding wear whose design has a mate: contact takes most of the time then."""
 
@@ -402,6 +403,48 @@ def _as_cut(rng: Rng, points: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _some_flanks(rng: Rng, points: int) -> dict[str, Any]:
+    g = replace(draws.gear(rng), teeth=int(rng.choice([18, 20, 22, 24, 25, 36])))
+    tools = (draws.plain_tool(rng),)
+    f, z = draws.frame(g, tools), g.teeth
+    step = int(rng.choice([2, 3, 4, 6, 0, 0]))
+    if step:
+        which = np.arange(int(rng.integers(step)), z - z % step, step)
+    else:
+        which = rng.permutation(z)[: max(2, round(float(rng.uniform(0.2, 0.5)) * z))]
+    factors = np.zeros(z)
+    factors[which] = rng.uniform(0.6, 1.4, len(which)) if rng.random() < 0.4 else 1.0
+    side, depth, even = int(rng.choice([-1, 1])), log_uniform(rng, 0.015, 0.09), bool(rng.random() < 0.5)
+    lost = tuple(factors.tolist())
+    wear = Even(side, depth, lost) if even else replace(draws.sliding(rng, f, side, depth, True), factors=lost)
+    beside = str(rng.choice(["nothing", "a coat", "the table", "index errors", "runout", "a coat and the table"]))
+    made: tuple[Field, ...] = ()
+    shifts: tuple[Any, ...] = ()
+    declared: list[dict[str, Any]] = []
+    may: tuple[str, ...] = ()
+    if "coat" in beside:
+        thick = float(rng.uniform(0.006, 0.02))
+        shifts = (*shifts, Coat(thick))
+        declared.append({"name": "coating", "parameters": {"thickness_um": 1e3 * thick}})
+    if "table" in beside:
+        angle, order = math.radians(float(rng.uniform(0.005, 0.02))), int(rng.integers(1, 9))
+        shifts = (*shifts, Turntable(order, angle, float(rng.uniform(0.0, 2.0 * math.pi))))
+        declared.append({"name": "turntable_angle", "parameters": {"order": order, "amplitude_deg": math.degrees(angle)}})
+    if beside == "index errors":
+        arcs = effects.index(z, float(rng.uniform(0.003, 0.008)), rng)
+        made = (Index(arcs),)
+        declared.append({"name": "pitch", "parameters": {"index_um": [1e3 * arc for arc in arcs]}})
+    if beside == "runout":
+        made = (RoundWave(float(rng.uniform(0.003, 0.015)), 1.0, float(rng.uniform(0.0, 2.0 * math.pi))),)
+        may = ("pitch", "eccentricity", "turntable_angle", "axis_offset_lateral")
+    scanner = draws.scanner(rng, g, points, shifts=shifts)
+    return {
+        "what": f"{len(which)} of {z}, {STEPS[step]}, {'even' if even else 'sliding'}, beside {beside}",
+        "part": Part(g, tools, made, (wear,)), "design": draws.design_of(g, tools[0]), "scanner": scanner,
+        "declared": tuple(declared), "may_name": (*may, *_also(scanner)),
+    }  # fmt: skip
+
+
 FAMILIES: Mapping[str, Family] = {
     "a": Family("unknown root", _root),
     "b": Family("modified profiles", _profiles),
@@ -418,4 +461,5 @@ FAMILIES: Mapping[str, Family] = {
     "m": Family("smoothed or thinned", _processed),
     "n": Family("modified as drawn", _as_drawn),
     "o": Family("class 6 to 10 as cut", _as_cut),
+    "p": Family("some flanks worn all over", _some_flanks),
 }

@@ -220,6 +220,20 @@ class Sliding:
         return np.abs(1.0 - (total - roll) / (self.ratio * roll))
 
 
+@dataclass(frozen=True)
+class Even:
+    """The same loss all over the flanks of a side, each tooth with its factor; it fades to nothing at the form circle as `Sliding` does."""
+
+    side: int
+    depth: float
+    factors: tuple[float, ...]
+
+    def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
+        start = f.form + max(0.08 * (f.tip - f.form), 0.15 * f.module)
+        loss = self.depth * _smooth((roll - f.form) / (start - f.form)) * np.asarray(self.factors)[tooth.astype(int)]
+        return np.where(side == self.side, -loss, 0.0)
+
+
 @dataclass(frozen=True, eq=False)
 class Pits:
     """Small round pits on some flanks: rows (tooth, side, roll, z, radius, depth), each a bowl with a flat rim."""
