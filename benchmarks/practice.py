@@ -29,7 +29,7 @@ RIGHT = "[gear]\nteeth = 12\nmodule = 3.0\nhelix_angle = 15.0\nface_width = 20.0
 LEFT = "[gear]\nteeth = 23\nmodule = 2.5\nhelix_angle = -25.0\nface_width = 18.0\nprofile_shift = 0.2\nrack_tip_radius = 0.3\n"
 RING = (
     "[gear]\nteeth = 48\nmodule = 2.5\nface_width = 15.0\ninternal = true\naddendum = 0.8\n"
-    "cutter_teeth = 20\ncutter_tip_radius = 0.4\nrim_diameter = 144.0\n"
+    "cutter_teeth = 20\ncutter_tip_radius = 0.16\nrim_diameter = 144.0\n"
 )
 """Designs, as the truth files have the drawing."""
 

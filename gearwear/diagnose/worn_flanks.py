@@ -94,6 +94,12 @@ class Levels:
     def count(self) -> int:
         return len(self.teeth)
 
+    @property
+    def weight(self) -> float:
+        """Teeth that a covariance of what is left counts as: of few teeth it follows the one that lies off, and a likelihood ratio is too large by as
+        much (Bartlett 1938)."""
+        return self.count - (self.base.shape[1] + 0.5 * self.wide**2) / self.wide
+
 
 @dataclass(frozen=True)
 class Explained:
@@ -170,7 +176,7 @@ class Explained:
         every = _white(np.hstack([levels.value[:, None], *(term.columns for term in levels.terms)]), fitted.root)
         every = every - basis @ (basis.T @ every)
         rest = every[:, 0]
-        scattered = _scattered(rest[:, None], levels.wide)
+        scattered = _scattered(levels, rest[:, None])
         result = np.full(len(levels.terms), -math.inf)
         sizes = np.array([term.columns.shape[1] for term in levels.terms], dtype=np.int64)
         starts = 1 + np.cumsum(sizes) - sizes
@@ -183,7 +189,7 @@ class Explained:
             gram += (RIDGE * np.trace(gram, axis1=1, axis2=2)[:, None, None] + 1e-300) * np.eye(size)
             solved = np.linalg.solve(gram, moment[..., None])[..., 0]
             left = rest[:, None] - np.einsum("nti,ti->nt", columns, solved)
-            result[some] = scattered - _scattered(left, levels.wide) - np.array([levels.terms[i].price for i in some])
+            result[some] = scattered - _scattered(levels, left) - np.array([levels.terms[i].price for i in some])
         return result
 
 
@@ -214,11 +220,11 @@ def _white(columns: Floats, root: Floats) -> Floats:
     return np.asarray(root @ columns.reshape(-1, len(root), columns.shape[1])).reshape(columns.shape)
 
 
-def _scattered(rest: Floats, wide: int) -> Floats:
-    """n ln of the determinant of the covariance of what is left, (w n, t): (t,)."""
-    by_tooth = rest.reshape(-1, wide, rest.shape[1])
-    moments = np.einsum("nit,njt->tij", by_tooth, by_tooth) / len(by_tooth) + SHOWN * np.eye(wide)
-    return np.asarray(len(by_tooth) * np.linalg.slogdet(moments)[1])
+def _scattered(levels: Levels, rest: Floats) -> Floats:
+    """Misfit by the determinant of the covariance of what is left, (w n, t): (t,)."""
+    by_tooth = rest.reshape(-1, levels.wide, rest.shape[1])
+    moments = np.einsum("nit,njt->tij", by_tooth, by_tooth) / len(by_tooth) + SHOWN * np.eye(levels.wide)
+    return np.asarray(levels.weight * np.linalg.slogdet(moments)[1])
 
 
 def _fitted(levels: Levels, columns: Floats, own: Floats) -> FittedLevels:
@@ -237,7 +243,7 @@ def _fitted(levels: Levels, columns: Floats, own: Floats) -> FittedLevels:
         size, axes = np.linalg.eigh(left.T @ left / free)
         kept = np.maximum(size, 1.0)
         scatter, root = (axes * kept) @ axes.T, (axes / np.sqrt(kept)).T
-        misfit = float((number * np.log(kept) + number * size / kept).sum())
+        misfit = levels.weight * float((np.log(kept) + size / kept).sum())
     lost, rest = tuple(solved[columns.shape[1] :].tolist()), levels.value - columns @ solved[: columns.shape[1]]
     return FittedLevels(misfit, lost, rest, scatter, root)
 
