@@ -71,7 +71,7 @@ MUTATIONS = [
         ("diagnose/worn_sides.py", "limit = self.by_sides[taken] + rules().close", "limit = self.by_sides[taken]", "diagnose/core/test_worn_sides.py"),
         ("diagnose/effects/root_form.py", "LOWER_END = 0.3", "LOWER_END = 0.6", "diagnose/test_root_form.py"),
         ("diagnose/worn_flanks.py", "int(rules().most_worn * one", "int(0.8 * rules().most_worn * one", "diagnose/core/test_worn_flanks.py"),
-        ("diagnose/worn_flanks.py", "self.count - (self.base.shape[1] + 0.5 * self.wide**2) / self.wide", "float(self.count)", "diagnose/core/test_worn_flanks.py"),
+        ("diagnose/worn_flanks.py", " - (self.base.shape[1] + 0.5 * self.wide**2) / self.wide", "", "diagnose/core/test_worn_flanks.py"),
         ("diagnose/worn_flanks.py", "without.cost - rules().close", "math.inf", "diagnose/core/test_worn_flanks.py"),
         ("diagnose/worn_flanks.py", "any_of_them, 2.0 * _shape_price()", "any_of_them, any_of_them", "diagnose/core/test_worn_flanks.py"),
         ("diagnose/loop.py", "if _still_in(plain, low)", "if False", "diagnose/core/test_worn_flanks.py"),

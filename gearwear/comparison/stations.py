@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gearwear.arrays import Bools
+from gearwear.arrays import Bools, Floats
 from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import PutBack, put_back, side_fields
@@ -28,7 +28,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import significant
 from gearwear.design.side import Side, sides_of
 from gearwear.design.spec import ScannerSpec
-from gearwear.design.surface import FILLET, FLANK, TIP, flank_points
+from gearwear.design.surface import FILLET, FLANK, TIP, SurfacePoints, flank_points
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.halves import Half, inspect_half
@@ -422,9 +422,13 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
-    left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
-    arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
-    return replace(result.against(result.as_made + arc), made=arc)
+    flanks = [flank_points(gear, tooth, np.full(len(tooth), side), roll, z) for side in (1, -1)]
+
+    def arc(of: Callable[[SurfacePoints], Floats]) -> Floats:
+        return np.asarray(gear.arc_per_depth * np.sum([of(flank) for flank in flanks], axis=0).reshape(gear.teeth, -1))
+
+    # Between the places that were measured a tooth is as thin as it was made, and no thinner for what the scanner may have done.
+    return replace(result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE))), made=arc(loop.surely_made))
 
 
 def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear) -> SectionThickness:

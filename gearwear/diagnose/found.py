@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
+from gearwear.diagnose.effects import named_effects
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.fit import Fit, Model
@@ -190,10 +192,19 @@ class Loop(Card):
 
     def deviation(self, points: SurfacePoints, kinds: frozenset[Kind]) -> Floats:
         """What the effects of some kinds do to the deviation of points, mm, (n,)."""
+        return self._sum((effect for effect in (*self.effects, *self.form) if effect.kind in kinds), points)
+
+    def surely_made(self, points: SurfacePoints) -> Floats:
+        """What the maker did to the deviation of points, mm, (n,), without what the scanner may have done as well."""
+        known = named_effects()
+        made = (effect for effect in (*self.effects, *self.form) if effect.kind in (Kind.MANUFACTURE, Kind.FORM))
+        sure = (e for e in made if all(known[name].kind is not Kind.MEASUREMENT for name in e.alternatives if name in known))
+        return self._sum(sure, points)
+
+    def _sum(self, effects: Iterable[FoundEffect], points: SurfacePoints) -> Floats:
         total = np.zeros(len(points))
-        for effect in (*self.effects, *self.form):
-            if effect.kind in kinds:
-                total += effect.candidate.effect.basis(points, self.context, effect.candidate.shape) @ effect.amplitudes
+        for effect in effects:
+            total += effect.candidate.effect.basis(points, self.context, effect.candidate.shape) @ effect.amplitudes
         return total
 
     def headline(self) -> str:

@@ -98,7 +98,7 @@ class Levels:
     def weight(self) -> float:
         """Teeth that a covariance of what is left counts as: of few teeth it follows the one that lies off, and a likelihood ratio is too large by as
         much (Bartlett 1938)."""
-        return self.count - (self.base.shape[1] + 0.5 * self.wide**2) / self.wide
+        return float(self.count - (self.base.shape[1] + 0.5 * self.wide**2) / self.wide)
 
 
 @dataclass(frozen=True)
