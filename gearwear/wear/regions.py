@@ -34,7 +34,9 @@ LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
 LEAST_VOLUME_OF_WORN_SIDE = 2.0
 """The same of all flanks of a side that is known to be worn throughout, together: no flank of it need prove it by itself, and to leave out those that
-do not would leave out what they lost; and of a flank that is known to be worn all over."""
+do not would leave out what they lost."""
+LEAST_VOLUME_OF_WORN_FLANK = 3.0
+"""The same of a flank that is known to be worn all over, by its level: beyond chance."""
 LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
@@ -257,7 +259,7 @@ def find_wear(
     mask &= ~edges[:, :, None, None]
     least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
     whole = np.zeros(least.shape, dtype=np.bool_) if loop is None or loop.worn_flanks is None else loop.worn_flanks.copy()
-    least[whole] = LEAST_VOLUME_OF_WORN_SIDE
+    least[whole] = LEAST_VOLUME_OF_WORN_FLANK
     whole[:, [side.index for side in worn]] = True
     mask[whole, :, sheets.fillet :] = True
     allowed = toothed & ~corners & ~gone

@@ -1,9 +1,13 @@
 """A scan that software smoothed: what its forms may be as well."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from gearwear.design.surface import flank_points
 from gearwear.diagnose.loop import _or_smoothing
-from tests.report.fake import fake_effect
+from tests.report.fake import fake_effect, fake_results
 
 
 @pytest.mark.parametrize(
@@ -16,3 +20,14 @@ from tests.report.fake import fake_effect
 def test_in_a_scan_that_software_smoothed_forms_are_doubted_and_levels_are_not(name, doubted):
     effect = fake_effect(name, {}, others=("taper",))
     assert _or_smoothing(effect).alternatives == (("edge_rounding", "taper") if doubted else ("taper",))
+
+
+@pytest.mark.parametrize(
+    ("others", "sure"), [((), True), (("taper",), True), (("edge_rounding",), False), (("scale", "taper"), False)]
+)
+def test_what_the_scanner_may_have_done_is_not_surely_made(others, sure):
+    """A profile shift of 1 mm moves a flank by sin α along its normal."""
+    loop = replace(fake_results().loop, effects=(fake_effect("profile_shift", {}, others=others),), form=())
+    gear = loop.context.gear
+    feet = flank_points(gear, np.arange(12), np.ones(12, dtype=np.int64), np.full(12, gear.reference_roll), np.full(12, 5.0))
+    np.testing.assert_allclose(loop.surely_made(feet), np.sin(np.radians(20.0)) if sure else 0.0, atol=1e-12)
