@@ -18,7 +18,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.comparison.contributions import PutBack, SideFields, arc_fields, cell_fields, put_back
 from gearwear.comparison.measured_gear import MeasuredGear
-from gearwear.comparison.relocated import MEASURED
+from gearwear.diagnose.effects.base import MEASURED
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult, ContactVariant
 from gearwear.meshing.linear import LinearResult

@@ -10,11 +10,10 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MeasuredGear
-from gearwear.comparison.relocated import MADE, MEASURED
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, SurfacePoints, flank_points, locate
 from gearwear.design.twist import twisted
-from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.effects.base import MADE, MEASURED, Context, Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.pose import motion_columns

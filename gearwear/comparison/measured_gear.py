@@ -15,7 +15,7 @@ from gearwear.comparison.collecting import Cut
 from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.passes import Streamed, first_pass, grid_of_sample, last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
-from gearwear.comparison.relocated import LEAST_NOISE, MADE, MEASURED, FinalMotion, Relocation, clip_of, is_far, with_pits
+from gearwear.comparison.relocated import LEAST_NOISE, FinalMotion, Relocation, clip_of, is_far, with_pits
 from gearwear.comparison.stated import at_20_degrees, check_streamed, tooth_1_of, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
 from gearwear.design.card import Card, CardRow
@@ -24,7 +24,7 @@ from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints
 from gearwear.design.twist import Toothing, drawn_height, refuse
-from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.effects.base import MADE, MEASURED, Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, left_out, loop_grid, rough_grid
 from gearwear.placing.cells import CellGrid, Cells, bin_points

@@ -10,7 +10,7 @@ from gearwear.arrays import Floats, Ints
 from gearwear.comparison.on_design import OnDesign, Places
 from gearwear.design.gear import Gear
 from gearwear.design.surface import OTHER, Bands, SurfacePoints, locate
-from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.effects.base import MADE, MEASURED
 from gearwear.diagnose.loop import Loop
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
@@ -25,8 +25,6 @@ LEAST_NOISE = 1e-4
 """mm; what a scan is taken to scatter at least. An export from CAD has none, and rounding would be explained in its place."""
 BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
 """Field of `Bands` for each surface code."""
-MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
-MADE = frozenset({Kind.MANUFACTURE, Kind.FORM})
 
 
 def clip_of(located: SurfacePoints) -> float:

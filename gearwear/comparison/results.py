@@ -12,7 +12,6 @@ from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.comparison.open_volume import OpenVolume
-from gearwear.comparison.relocated import MEASURED
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.comparison.weighed import WeighedLoss, weighed_loss
 from gearwear.design.card import Card, CardRow, counted, measured
@@ -21,7 +20,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.effects.base import MEASURED, Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.halves import Half
 from gearwear.inspection.inspection import Inspection

@@ -17,7 +17,6 @@ from gearwear.comparison.consequences import Change, meshing_changes, thickness_
 from gearwear.comparison.contributions import PutBack, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress, measure
 from gearwear.comparison.open_volume import even_loss
-from gearwear.comparison.relocated import MADE
 from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
@@ -29,6 +28,7 @@ from gearwear.design.quantity import significant
 from gearwear.design.side import Side, sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FILLET, FLANK, TIP, SurfacePoints, flank_points
+from gearwear.diagnose.effects.base import MADE
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.halves import Half, inspect_half
@@ -153,7 +153,7 @@ def compare(
         partial(_thick, measured, unworn, left_in, wear),
         partial(_inspected, measured, inspection),
         partial(_solid, measured, worn, wear),
-        partial(_undecided, measured if unworn is None else None),
+        partial(_undecided, measured.undecided if unworn is None else ()),
     ]
     with beside(beyond) as others:
         fields = side_fields(measured, effects)
@@ -340,12 +340,9 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
 
 
-def _undecided(measured: MeasuredGear | None) -> tuple[tuple[float, float], ...]:
-    """Worn volume and its standard deviation with other sides worn throughout, mm³; none where another scan tells these."""
-    wears = [
-        find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone)
-        for gear in (() if measured is None else measured.undecided)
-    ]
+def _undecided(gears: Sequence[MeasuredGear]) -> tuple[tuple[float, float], ...]:
+    """Worn volume and its standard deviation with other sides worn throughout, mm³."""
+    wears = [find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone) for gear in gears]
     return tuple((wear.volume, wear.volume_std) for wear in wears)
 
 

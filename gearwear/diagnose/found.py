@@ -17,7 +17,7 @@ from gearwear.diagnose.correlations import Correlation, EffectSize, correlations
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects import named_effects
-from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.effects.base import MADE, Context, Kind
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
@@ -197,7 +197,7 @@ class Loop(Card):
     def surely_made(self, points: SurfacePoints) -> Floats:
         """What the maker did to the deviation of points, mm, (n,), without what the scanner may have done as well."""
         known = named_effects()
-        made = (effect for effect in (*self.effects, *self.form) if effect.kind in (Kind.MANUFACTURE, Kind.FORM))
+        made = (effect for effect in (*self.effects, *self.form) if effect.kind in MADE)
         sure = (e for e in made if all(known[name].kind is not Kind.MEASUREMENT for name in e.alternatives if name in known))
         return self._sum(sure, points)
 

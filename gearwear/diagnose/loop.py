@@ -118,10 +118,10 @@ def close_loop(
     if _still_in(plain, low):
         apart = cells.grid.on_flanks(low)
         plain = searched_without(plain.worn)
-    known = SideCosts({plain.worn: 0.0})
-    # Whether a side is worn throughout the others tell.
-    others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
-    costs = known if worn is not None else side_costs(others_alone, plain.problem, plain.model, noise)
+    costs = SideCosts({plain.worn: 0.0})
+    if worn is None:  # whether a side is worn throughout the others tell
+        others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
+        costs = side_costs(others_alone, plain.problem, plain.model, noise)
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == plain.worn else searched_without(sides), noise, always)

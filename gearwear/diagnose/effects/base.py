@@ -44,6 +44,12 @@ class Kind(StrEnum):
     WEAR = "wear"
 
 
+MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
+"""What the scanner did, and how the gear lay on it."""
+MADE = frozenset({Kind.MANUFACTURE, Kind.FORM})
+"""How the gear was made."""
+
+
 @dataclass(frozen=True, slots=True)
 class Context:
     """What an effect may need to know besides the points.
