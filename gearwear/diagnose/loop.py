@@ -6,6 +6,7 @@ is decided first, on all cells (`worn_sides`); then the scan is explained withou
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,8 +25,8 @@ from gearwear.diagnose.effects.sliding_wear import SLIDING_WEAR
 from gearwear.diagnose.elimination import eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
-from gearwear.diagnose.judge import alike, replacements
 from gearwear.diagnose.masks import not_stray, sound_cells, whole_flanks, worn_mask
+from gearwear.diagnose.of_the_part import left_in_the_part, of_the_form
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
@@ -146,7 +147,7 @@ def _or_smoothing(effect: FoundEffect) -> FoundEffect:
     form = known.group == FORM_GROUP or (known.kind is Kind.MANUFACTURE and known.group != LEVEL_GROUP)
     if not form or known.tooth_specific:
         return effect
-    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, EDGE_ROUNDING})))
+    return _or(effect, {EDGE_ROUNDING})
 
 
 def _refuted(loop: Loop, cells: Cells, flanks: SurfacePoints) -> bool:
@@ -175,7 +176,7 @@ def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks:
                 worn.add(SLIDING_WEAR)
     if effect.kind is Kind.MANUFACTURE and effect.lowers_by(flanks, taken.context) > 0.0:
         worn.add(ABRASIVE_WEAR)
-    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, *worn}))) if worn else effect
+    return _or(effect, worn)
 
 
 def _still_in(searched: Searched, flanks: Bools) -> bool:
@@ -220,7 +221,8 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
         fit = replace(fit, target=target)
     # Where a form of all teeth is left that is larger than the noise, it decides between effects that are nearly alike, and not they themselves.
     form = any(pattern.is_form(noise) for pattern in stood.patterns)
-    kept = _left_in_the_part(problem, stood.model, form)
+    kept = left_in_the_part(problem, stood.model, form)
+    kept, instead = of_the_form(fit, problem, kept) if form else (kept, {})
     if kept != stood.model:
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, kept, noise, known)
@@ -228,8 +230,14 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
         fit = _with_fillets(fit, sound_cells(fit.cells, searched.worn))
         problem = fit.problem(problem.unit, context, always)
     loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
+    loop = replace(loop, effects=tuple(_or(effect, instead.get(effect.name, frozenset())) for effect in loop.effects))
     # What all teeth share is known from the others, and no texture under the wear of one of them.
     return replace(loop, covariance=estimate_covariance(fit.cells, loop.left, loop.use, noise)) if loop.patterns else loop
+
+
+def _or(effect: FoundEffect, names: Collection[str]) -> FoundEffect:
+    """The effect, with more names that it cannot be told from."""
+    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, *names}))) if names else effect
 
 
 def _with_fillets(fit: Fit, sound: Bools) -> Fit:
@@ -238,25 +246,6 @@ def _with_fillets(fit: Fit, sound: Bools) -> Fit:
     known = fit.covariance
     white = np.where(fillets, NO_EVIDENCE * (known.white + known.texture), known.white)
     return replace(fit, use=fit.use | fillets, covariance=replace(known, white=white))
-
-
-def _left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:
-    """The model with the maker's effect in place of a scanner's that cannot be told from it: what may be the part's own stays measured.
-
-    With `form`, what explains nearly as much cannot be told from it either, and a coat is no more likely than a thick tooth.
-    """
-    for index, candidate in enumerate(model):
-        effect = candidate.effect
-        if effect.kind is not Kind.MEASUREMENT or (effect.usual and not form) or candidate.name in problem.always:
-            continue
-        rest = model[:index] + model[index + 1 :]
-        others = list(replacements(problem, model, index))
-        if form:
-            others += [(other, (*rest, other)) for other in alike(problem, model, index)]
-        for other, replaced in others:
-            if other.effect.kind is Kind.MANUFACTURE:
-                return _left_in_the_part(problem, replaced, form)
-    return model
 
 
 def _search(

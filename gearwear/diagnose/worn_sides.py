@@ -2,7 +2,8 @@
 
 What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or a profile that the flanks
 of a side, or of both, share: a grinding wheel dressed for one side gives it a form of its own. Worn is a loss of the shape that wear has, in which every tooth may have its own
-share; against a profile of one side, any loss that is least at the pitch point. Profiles and losses alike pay for what they need of their freedom. Each is fitted to the same cells, and no cell is left out for
+share; against a profile of one side, any loss that is least at the pitch point, where its form is larger than flanks of the gear's class are cut with: a smaller one
+is as likely made. Profiles and losses alike pay for what they need of their freedom. Each is fitted to the same cells, and no cell is left out for
 what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows the fit would let each
 hypothesis leave out what speaks against it.
 """
@@ -16,17 +17,18 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
-from numpy.polynomial.legendre import legvander
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
+from gearwear.design.tolerance import profile_form_tolerance
 from gearwear.diagnose.columns import CellColumns, Stretch, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.few_cells import on_few_cells
 from gearwear.diagnose.fit import Fit, Model, design_unit
+from gearwear.diagnose.flank_columns import any_profile, any_wear_columns, made_profiles, on_each_side, on_worn, wear_columns
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import above_last_fillet_edge, sound_cells
 from gearwear.diagnose.robust_fit import SETTLED, Robust, Shares, robust_fit
@@ -37,8 +39,6 @@ from gearwear.placing.edges import rounded_ends
 from gearwear.processors import each
 
 NO_SIDE: frozenset[Side] = frozenset()
-SMOOTH = 4
-"""Degree up to which a profile may be a polynomial; beyond, it bends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,15 +91,16 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
     model = problem.with_offsets(model)
     fit, sound = on_few_cells(fit, _believed(fit.cells, problem.context, noise), noise)
     scan = _Scan.of(fit, problem, model, noise, sound)
-    shared, price = _made_profiles(fit.cells)
-    by_side = _by_side(fit.cells, shared), np.tile(price, len(Side))
+    shared, price = made_profiles(fit.cells)
+    by_side = on_each_side(fit.cells, shared), np.tile(price, len(Side))
     profiles = (shared[:, :0], price[:0]), (shared, price), by_side
     plain, alike, apart = each([partial(scan.made_cost, model, *profile) for profile in profiles])
     made = min(plain, alike)
     answers = frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)
-    worn = each([partial(scan.least_worn_cost, model, sides, apart < made) for sides in answers])
+    unworn = min(made, apart)
+    worn = each([partial(scan.least_worn_cost, model, sides, apart < made, unworn) for sides in answers])
     tenable = {sides: cost for sides, cost in zip(answers, worn, strict=True) if cost is not None}
-    return SideCosts({NO_SIDE: min(made, apart)} | tenable, made)
+    return SideCosts({NO_SIDE: unworn} | tenable, made)
 
 
 def _believed(cells: Cells, context: Context, noise: float) -> Bools:
@@ -109,6 +110,14 @@ def _believed(cells: Cells, context: Context, noise: float) -> Bools:
     first |= (points.surface == FILLET) & above_last_fillet_edge(cells)
     believed: Bools = sound_cells(cells, NO_SIDE, context.fillets_told) & ~first & ~rounded_ends(cells, noise)
     return believed
+
+
+@dataclass(frozen=True, slots=True)
+class _Loss:
+    """What flanks may have lost, (m,) mm, the mean of all teeth, and the cost with it."""
+
+    cost: float
+    loss: Floats
 
 
 @dataclass(frozen=True)
@@ -125,8 +134,8 @@ class _Scan:
         return {}
 
     @cached_property
-    def _worn(self) -> dict[tuple[tuple[int, ...], bytes], list[float]]:
-        """Costs of models with losses of given shapes."""
+    def _worn(self) -> dict[tuple[tuple[int, ...], bytes], list[_Loss]]:
+        """Losses of given shapes beside given models."""
         return {}
 
     @classmethod
@@ -134,7 +143,7 @@ class _Scan:
         """With the correlation that the richest of all hypotheses leaves: what a poorer one cannot explain is not its noise (Mallows 1973)."""
         cells = fit.cells
         scan = cls(fit, problem, sound)
-        free = _by_side(cells, _profile(cells))[scan.rows]
+        free = on_each_side(cells, any_profile(cells))[scan.rows]
         columns = np.hstack([scan.columns(model), free])
         for _ in range(2):
             # Which cells are in at all moves the correlation: these fits go through all passes.
@@ -210,8 +219,11 @@ class _Scan:
             chosen, rest = np.append(chosen, rest[best]), np.delete(rest, best)
         return chosen
 
-    def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool) -> float | None:
-        """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these."""
+    def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> float | None:
+        """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
+
+        A loss of no shape that wear has by itself, and of a form that flanks of the gear's class may be cut with, costs no less than `unworn`.
+        """
         cells, context = self.fit.cells, self.problem.context
         law, sides = wear_columns(cells, context, worn)
         shapes = [(law, sides)]
@@ -219,22 +231,34 @@ class _Scan:
             left, right = (law[:, sides == int(side)] for side in Side)
             shapes.append((left + right, np.zeros(left.shape[1], np.int64)))
             # Or one has lost evenly what the other has lost by sliding: of both evenly it would be a thinner tooth.
-            even, on = _on_worn(cells, np.ones((len(law), 1)), worn)
+            even, on = on_worn(cells, np.ones((len(law), 1)), worn)
             for side in Side:
                 slides, other = sides == int(side), on != int(side)
                 shapes.append((np.hstack([law[:, slides], even[:, other]]), np.concatenate([sides[slides], on[other]])))
         else:
             # All over alike: a thinner tooth, but for where fillets stand.
-            even, on = _on_worn(cells, np.ones((len(law), 1)), worn)
+            even, on = on_worn(cells, np.ones((len(law), 1)), worn)
             shapes.append((even, on))
-            if any_shape:
-                # As free as the profile that it may have been made with, but for what wear never does.
-                shapes += any_wear_columns(cells, context, worn)
-        costs = [self.worn_cost(model, worn, law, sides) for law, sides in shapes]
-        return min((cost for cost in costs if cost is not None), default=None)
+        costs = [lost.cost for law, on in shapes for lost in self.losses(model, worn, law, on)]
+        if any_shape and len(worn) == 1:
+            # As free as the profile that it may have been made with, but for what wear never does.
+            gear, (side,) = cells.grid.gear, worn
+            allowed = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
+            for law, on in any_wear_columns(cells, context, worn):
+                for lost in self.losses(model, worn, law, on):
+                    costs.append(lost.cost if self._form(lost.loss, side) > allowed else max(lost.cost, unworn))
+        return min(costs, default=None)
 
-    def worn_cost(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> float | None:
-        """Of the best model beside wear of some shapes on some sides; None where what these have in common is none of them.
+    def _form(self, loss: Floats, side: Side) -> float:
+        """How far a loss (m,) on the flanks of a side lies off a slope and a lead, peak to peak, mm."""
+        points = self.fit.cells.points
+        rows = self.rows[(points.surface == FLANK)[self.rows] & (points.side == int(side))[self.rows]]
+        roll, height = points.roll[rows], points.position[rows, 2]
+        plane = np.column_stack([np.ones(len(rows)), roll, height, roll * height])
+        return float(np.ptp(loss[rows] - plane @ np.linalg.lstsq(plane, loss[rows])[0]))
+
+    def losses(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[_Loss]:
+        """The losses of some shapes on some sides, each beside the best model; none where what these have in common is none of them.
 
         The search begins with what it chose without wear, with what of that the scanner did, and with nothing: what stood in for wear may be
         hard to get rid of, and what the scanner did hard to find from nothing beside it.
@@ -243,7 +267,7 @@ class _Scan:
         fewer = {_columns_of(start): start for start in (self._known(by_scanner), self._known(()))}
         # One set of weights tells all of them which cells to believe: those that the richest ends with.
         wide, gram = self._beside(law, self._losses(model, law, sides)[2].weight)
-        added, tried, costs = np.arange(wide.count - law.shape[1], wide.count), dict[bytes, Around](), list[float]()
+        added, tried, losses = np.arange(wide.count - law.shape[1], wide.count), dict[bytes, Around](), list[_Loss]()
         for start in [model, *(start for start in fewer.values() if len(start) < len(model))]:
             beside = self.problem.columns(start)
             kept = gram.solve_non_negative(beside, added)[len(beside) :] > 0.0
@@ -256,12 +280,12 @@ class _Scan:
             # Shapes that are richer than what is lost end at the same columns.
             key = _columns_of(searched), hashlib.sha256(least.tobytes()).digest() + sides[kept].tobytes()
             if key not in self._worn:
-                self._worn[key] = self._costs_of(searched, worn, least, sides[kept])
-            costs += self._worn[key]
-        return min(costs, default=None)
+                self._worn[key] = self._losses_beside(searched, worn, least, sides[kept])
+            losses += self._worn[key]
+        return losses
 
-    def _costs_of(self, searched: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
-        """Costs of a model beside losses of some shapes: with the same on all teeth, and with a share of it on each."""
+    def _losses_beside(self, searched: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[_Loss]:
+        """Losses of some shapes beside a model: the same on all teeth, and with a share of it on each."""
         law, sides, fitted = self._losses(searched, law, sides)
         if _lost_on(sides) != worn:
             return []
@@ -281,9 +305,9 @@ class _Scan:
         if float((share <= 0.0).mean()) > rules().blank_flanks:
             return []
         if share.min() < 0.0:
-            return [common]
+            return [_Loss(common, loss)]
         shares = rules().parameter_penalty * (by_tooth.count - len(worn))
-        return [common, alone.square / self.problem.unit + price + shares + self._named(searched)]
+        return [_Loss(common, loss), _Loss(alone.square / self.problem.unit + price + shares + self._named(searched), loss)]
 
     def _known(self, model: Model) -> Model:
         """A model with what is in every one, to begin with."""
@@ -334,51 +358,6 @@ def _lost_on(sides: Ints) -> frozenset[Side]:
     return frozenset(side for side in Side if np.isin(sides, (0, int(side))).any())
 
 
-def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple[Floats, Ints]:
-    """Losses that wear may have on the flanks of some sides, (m, k), and the side of each column, (k,).
-
-    With the sliding, and in proportion to the way from the pitch point, below and above it by amounts of their own: as the load is shared.
-    """
-    return _on_worn(cells, _law_shapes(np.nan_to_num(cells.points.roll), context), worn)
-
-
-def _law_shapes(roll: Floats, context: Context) -> Floats:
-    """The sliding, and the way from the pitch point below and above it, at lengths of roll (m,): (m, 3)."""
-    pitch = context.pitch_roll
-    return np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
-
-
-def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> list[tuple[Floats, Ints]]:
-    """Any loss that is least at the pitch point, where nothing slides, as `wear_columns`: straight between the edges of the columns of cells.
-
-    Nothing there; the same beside an even loss; and beside one that leans across the face. And smooth: in proportion to the way from the pitch
-    point and to its square, below and above it.
-    """
-    points, nodes = cells.points, cells.grid.roll_edges.copy()
-    still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
-    nodes[still] = context.pitch_roll
-    roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
-    more = np.delete(_hats(roll, nodes), still, axis=1)
-    up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
-    law = _law_shapes(roll, context)
-    leaning = np.column_stack([up, 1.0 - up, up * law[:, 0], (1.0 - up) * law[:, 0]])
-    smooth = np.hstack([law, law[:, 1:] ** 2])
-    return [
-        _on_worn(cells, np.hstack(shapes), worn)
-        for shapes in ([more], [more, np.ones((len(more), 1))], [more, leaning], [smooth])
-    ]
-
-
-def _on_worn(cells: Cells, shapes: Floats, worn: frozenset[Side]) -> tuple[Floats, Ints]:
-    """Losses of some shapes (m, n) on the flanks of some sides, (m, k), and the side of each column."""
-    points, columns, sides = cells.points, list[Floats](), list[int]()
-    for side in sorted(worn):
-        own = cells.seen & (points.surface == FLANK) & (points.side == int(side))
-        columns.append(np.where(own[:, None], -shapes, 0.0))
-        sides += [int(side)] * shapes.shape[1]
-    return np.hstack(columns), np.array(sides, dtype=np.int64)
-
-
 def _by_tooth(cells: Cells, loss: Floats) -> CellColumns:
     """The common loss with a share of its own on every flank, (m, k)."""
     points, cuts = cells.points, cuts_of(cells.grid)
@@ -393,39 +372,3 @@ def _by_tooth(cells: Cells, loss: Floats) -> CellColumns:
         here = np.unique(which[which >= 0])
         stretches.append(Stretch(rows, here, np.where(which[:, None] == here, lost, 0.0)))
     return CellColumns(len(loss), len(worn), tuple(stretches))
-
-
-def _made_profiles(cells: Cells) -> tuple[Floats, Floats]:
-    """What a profile may be made of, (m, k), and the price of each, (k,): smooth forms, and bends at the edges of the columns of cells, whose
-    place is a shape value as that of a relief is; nothing off the flanks."""
-    points, edges = cells.points, cells.grid.roll_edges
-    flank = cells.seen & (points.surface == FLANK)
-
-    def from_form(roll: Floats) -> Floats:
-        """0 at the form circle, 1 at the tip."""
-        return np.asarray((roll - edges[0]) / (edges[-1] - edges[0]), dtype=np.float64)
-
-    way = from_form(np.where(flank, np.nan_to_num(points.roll), edges[0]))
-    bends = np.maximum(way[:, None] - from_form(edges[1:-1]), 0.0)
-    smooth = legvander(2.0 * way - 1.0, SMOOTH)
-    price = rules().parameter_penalty * np.repeat([1.0, 1.0 + rules().shape_price], [smooth.shape[1], bends.shape[1]])
-    return np.where(flank[:, None], np.hstack([smooth, bends]), 0.0), price
-
-
-def _by_side(cells: Cells, columns: Floats) -> Floats:
-    """Columns (m, k) of the left flanks beside those of the right, (m, 2 k)."""
-    return np.hstack([np.where((cells.points.side == int(side))[:, None], columns, 0.0) for side in Side])
-
-
-def _profile(cells: Cells) -> Floats:
-    """Any profile of the flanks, (m, flank + 1): straight between the edges of the columns of cells."""
-    points, edges = cells.points, cells.grid.roll_edges
-    flank = cells.seen & (points.surface == FLANK)
-    roll = np.where(flank, np.nan_to_num(points.roll), edges[0])
-    return np.where(flank[:, None], _hats(roll, edges), 0.0)
-
-
-def _hats(roll: Floats, nodes: Floats) -> Floats:
-    """Functions that are straight between nodes, 1 at one of them and 0 at the others, at lengths of roll (m,): (m, n)."""
-    way = math.copysign(1.0, nodes[-1] - nodes[0])  # nodes run from the form circle to the tip
-    return np.column_stack([np.interp(way * roll, way * nodes, row) for row in np.eye(len(nodes))])

@@ -17,9 +17,9 @@ from scipy.special import ndtr
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.flank_columns import wear_columns
 from gearwear.diagnose.found import Loop
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.worn_sides import wear_columns
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, own_spread, window_mean
 from gearwear.wear.own_level import typical_heights

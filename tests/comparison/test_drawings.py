@@ -82,6 +82,9 @@ def test_a_coat_is_told_from_thicker_teeth_only_where_the_drawing_tells(against)
         ({"tolerance": 0.1}, "must be a table"),
         ({"tolerance": {"tip": 0.1}}, "tip_diameter"),
         ({"tolerance": {"face_width": -0.1}}, "from 0 to 10"),
+        ({"tolerance": {"flank_class": 13}}, "from 1 to 12"),
+        ({"tolerance": {"flank_class": 7.5}}, "whole number"),
+        ({"tolerance": {"flank_class": True}}, "flank_class"),
     ],
 )
 def test_a_wrong_tolerance_is_refused(table, line):
@@ -93,6 +96,8 @@ def test_stated_tolerances_are_taken_and_the_rest_is_usual():
     gear = parse_design({"gear": {**DRAWN, "tolerance": {"face_width": 0.02}}}).gears["gear"]
     assert gear.tolerance.face_width == 0.02
     assert 0.1 < gear.tolerance.tip_diameter < 0.3
+    assert gear.tolerance.flank_class == 8
+    assert parse_design({"gear": {**DRAWN, "tolerance": {"flank_class": 5}}}).gears["gear"].tolerance.flank_class == 5
 
 
 @pytest.mark.parametrize("factors", [(), tuple(np.linspace(0.5, 1.5, 20))], ids=["alike", "each otherwise"])

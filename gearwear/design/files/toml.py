@@ -68,7 +68,7 @@ GEAR_KEYS = (
     "left",
     "right",
 )
-TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
+TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift", "flank_class")
 MOST_BYTES = 1_000_000
 """Bytes of a file that describes a gear."""
 LONG_KEY = re.compile(
@@ -371,4 +371,8 @@ def _tolerance(part: str, table: object) -> GearTolerance:
     if not isinstance(table, dict):
         raise InputError(f"[{part}] tolerance = {shown(table)}: must be a table, written [{part}.tolerance]")
     check_keys(f"[{part}.tolerance]", table, TOLERANCE_KEYS)
-    return GearTolerance(**{key: finite_number(f"{part}.tolerance", table, key) for key in table})
+    told = {key: finite_number(f"{part}.tolerance", table, key) for key in table}
+    flank_class = told.pop("flank_class", None)
+    if flank_class is not None and not flank_class.is_integer():
+        raise InputError(f"[{part}.tolerance] flank_class = {flank_class:g}: must be a whole number from 1 to 12 (ISO 1328-1)")
+    return GearTolerance(**told, flank_class=None if flank_class is None else int(flank_class))

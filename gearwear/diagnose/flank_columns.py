@@ -1,0 +1,98 @@
+"""Columns for what flanks were made like and what they may have lost: profiles, and the shapes of wear."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.polynomial.legendre import legvander
+
+from gearwear.arrays import Floats, Ints
+from gearwear.design.side import Side
+from gearwear.design.surface import FLANK
+from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.rules import rules
+from gearwear.placing.cells import Cells
+
+SMOOTH = 4
+"""Degree up to which a profile may be a polynomial; beyond, it bends."""
+
+
+def made_profiles(cells: Cells) -> tuple[Floats, Floats]:
+    """What a profile may be made of, (m, k), and the price of each, (k,): smooth forms, and bends at the edges of the columns of cells, whose
+    place is a shape value as that of a relief is; nothing off the flanks."""
+    points, edges = cells.points, cells.grid.roll_edges
+    flank = cells.seen & (points.surface == FLANK)
+
+    def from_form(roll: Floats) -> Floats:
+        """0 at the form circle, 1 at the tip."""
+        return np.asarray((roll - edges[0]) / (edges[-1] - edges[0]), dtype=np.float64)
+
+    way = from_form(np.where(flank, np.nan_to_num(points.roll), edges[0]))
+    bends = np.maximum(way[:, None] - from_form(edges[1:-1]), 0.0)
+    smooth = legvander(2.0 * way - 1.0, SMOOTH)
+    price = rules().parameter_penalty * np.repeat([1.0, 1.0 + rules().shape_price], [smooth.shape[1], bends.shape[1]])
+    return np.where(flank[:, None], np.hstack([smooth, bends]), 0.0), price
+
+
+def any_profile(cells: Cells) -> Floats:
+    """Any profile of the flanks, (m, flank + 1): straight between the edges of the columns of cells."""
+    points, edges = cells.points, cells.grid.roll_edges
+    flank = cells.seen & (points.surface == FLANK)
+    roll = np.where(flank, np.nan_to_num(points.roll), edges[0])
+    return np.where(flank[:, None], _hats(roll, edges), 0.0)
+
+
+def on_each_side(cells: Cells, columns: Floats) -> Floats:
+    """Columns (m, k) of the left flanks beside those of the right, (m, 2 k)."""
+    return np.hstack([np.where((cells.points.side == int(side))[:, None], columns, 0.0) for side in Side])
+
+
+def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple[Floats, Ints]:
+    """Losses that wear may have on the flanks of some sides, (m, k), and the side of each column, (k,).
+
+    With the sliding, and in proportion to the way from the pitch point, below and above it by amounts of their own: as the load is shared.
+    """
+    return on_worn(cells, _law_shapes(np.nan_to_num(cells.points.roll), context), worn)
+
+
+def _law_shapes(roll: Floats, context: Context) -> Floats:
+    """The sliding, and the way from the pitch point below and above it, at lengths of roll (m,): (m, 3)."""
+    pitch = context.pitch_roll
+    return np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
+
+
+def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> list[tuple[Floats, Ints]]:
+    """Any loss that is least at the pitch point, where nothing slides, as `wear_columns`: straight between the edges of the columns of cells.
+
+    Nothing there; the same beside an even loss; and beside one that leans across the face. And smooth: in proportion to the way from the pitch
+    point and to its square, below and above it.
+    """
+    points, nodes = cells.points, cells.grid.roll_edges.copy()
+    still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
+    nodes[still] = context.pitch_roll
+    roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
+    more = np.delete(_hats(roll, nodes), still, axis=1)
+    up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
+    law = _law_shapes(roll, context)
+    leaning = np.column_stack([up, 1.0 - up, up * law[:, 0], (1.0 - up) * law[:, 0]])
+    smooth = np.hstack([law, law[:, 1:] ** 2])
+    return [
+        on_worn(cells, np.hstack(shapes), worn) for shapes in ([more], [more, np.ones((len(more), 1))], [more, leaning], [smooth])
+    ]
+
+
+def on_worn(cells: Cells, shapes: Floats, worn: frozenset[Side]) -> tuple[Floats, Ints]:
+    """Losses of some shapes (m, n) on the flanks of some sides, (m, k), and the side of each column."""
+    points, columns, sides = cells.points, list[Floats](), list[int]()
+    for side in sorted(worn):
+        own = cells.seen & (points.surface == FLANK) & (points.side == int(side))
+        columns.append(np.where(own[:, None], -shapes, 0.0))
+        sides += [int(side)] * shapes.shape[1]
+    return np.hstack(columns), np.array(sides, dtype=np.int64)
+
+
+def _hats(roll: Floats, nodes: Floats) -> Floats:
+    """Functions that are straight between nodes, 1 at one of them and 0 at the others, at lengths of roll (m,): (m, n)."""
+    way = math.copysign(1.0, nodes[-1] - nodes[0])  # nodes run from the form circle to the tip
+    return np.column_stack([np.interp(way * roll, way * nodes, row) for row in np.eye(len(nodes))])

@@ -1,0 +1,71 @@
+"""A form that all teeth have, under which the scanner cannot be told from the part: put in on the cells by closed forms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearwear.design.gear import Gear
+from gearwear.design.side import Side
+from gearwear.design.surface import FLANK
+from gearwear.design.tolerance import GearTolerance, profile_form_tolerance
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.loop import close_loop, make_context
+from gearwear.placing.cells import noise
+from tests.diagnose.core.test_worn_sides import LEFT, NO_SIDE, PINION, binned, explained
+from tests.synthetic import Effect
+
+
+@pytest.fixture(scope="module")
+def unworn():
+    return binned(())
+
+
+def along(cells):
+    """Length of roll, 0 at the form circle and 1 at the tip."""
+    first, last = cells.grid.roll_edges[[0, -1]]
+    return np.clip((np.nan_to_num(cells.points.roll) - first) / (last - first), 0.0, 1.0)
+
+
+def with_form(cells, form, sides=frozenset(Side)):
+    """The cells with a form (m,) on the flanks of some sides."""
+    flanks = cells.seen & (cells.points.surface == FLANK) & np.isin(cells.points.side, [int(side) for side in sides])
+    return cells.with_deviation(cells.points.deviation + np.where(flanks, form, 0.0))
+
+
+def wave(cells, left, right):
+    """One wave and a half along the profile, on left and right flanks of another height: what no effect is."""
+    return np.sin(3.0 * np.pi * along(cells)) * np.where(cells.points.side == int(Side.LEFT), left, right)
+
+
+def test_under_a_form_of_all_teeth_a_range_bias_is_not_told_from_a_profile(unworn):
+    """Flanks cut as a bias of range would show them, by 1 − L / r, and tips as drawn; where the root is free nothing else speaks for a bias."""
+    points = unworn.points
+    slanting = 1.0 - np.nan_to_num(points.roll) / np.hypot(points.position[:, 0], points.position[:, 1])
+    cells = with_form(unworn, wave(unworn, 0.025, -0.02) - 0.06 * slanting)
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), root_free=True)
+    assert {effect.kind for effect in loop.effects} == {Kind.MANUFACTURE}
+    assert any("incidence_bias" in effect.alternatives for effect in loop.effects)
+    assert any(pattern.is_form(loop.noise) for pattern in loop.patterns)
+
+
+def test_a_coat_on_roots_and_tips_is_told_whatever_the_flanks_are_like():
+    cells = binned((), (Effect("coating", {"thickness_um": 15.0}),))
+    loop = explained(with_form(cells, wave(cells, 0.04, 0.02)))
+    assert any(pattern.is_form(loop.noise) for pattern in loop.patterns)
+    assert [effect.name for effect in loop.effects if effect.kind is Kind.MEASUREMENT] == ["coating"]
+
+
+@pytest.mark.parametrize(("flank_class", "sides"), [(8, NO_SIDE), (3, LEFT)])
+def test_a_hollow_form_of_one_side_within_the_class_is_as_likely_cut(unworn, flank_class, sides):
+    """Nothing at the pitch point, 20 µm beside it, and not the shape of sliding: f_fαT is 24 µm in class 8 and 4.2 in class 3."""
+    first, last = unworn.grid.roll_edges[[0, -1]]
+    pitch_point = make_context(unworn, np.eye(3), False).pitch_roll
+    hollow = -0.02 * np.sin(2.0 * np.pi * (np.nan_to_num(unworn.points.roll) - pitch_point) / (last - first)) ** 2
+    gear = Gear.from_spec(replace(PINION.spec, tolerance=GearTolerance(flank_class=flank_class)))
+    cells = with_form(replace(unworn, grid=replace(unworn.grid, gear=gear)), hollow, LEFT)
+    assert (np.ptp(hollow) < profile_form_tolerance(gear.normal_module, flank_class)) == (sides == NO_SIDE)
+    loop = explained(cells)
+    assert {loop.worn_sides, *loop.undecided} >= {LEFT} and loop.worn_sides == sides
