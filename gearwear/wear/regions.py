@@ -31,7 +31,10 @@ from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 RIM = 0.2
 """Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
 LEAST_VOLUME = 5.0
-"""Least volume of a region in its own standard deviations."""
+"""Least volume of a region in the standard deviations of its own cells."""
+BEYOND_CHANCE = 3.0
+"""The same in all of its standard deviation, with what pose and effects add, which cells have in common. Of pits, which are known by their number, the
+95 % interval lies above nothing."""
 LEAST_VOLUME_OF_WORN_SIDE = 2.0
 """The same of all flanks of a side that is known to be worn throughout, together: no flank of it need prove it by itself, and to leave out those that
 do not would leave out what they lost."""
@@ -275,7 +278,9 @@ def find_wear(
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     stds = np.sqrt(np.diag(covariance))
-    sure = volumes.certainty > least[tuple(where.T)]
+    at = tuple(where.T)
+    by_itself = np.where(least[at] == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE)
+    sure = (volumes.certainty > least[at]) & (whole[at] | (value > by_itself * stds))
     on_worn = np.isin(where[:, 1], [side.index for side in worn])
     sure |= on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE)
     for tooth, half in where[~sure]:

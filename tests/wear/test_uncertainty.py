@@ -37,8 +37,9 @@ def test_the_deepest_place_is_a_mean_over_half_a_millimetre(size):
     assert region.max_depth - expected < 0.02 * expected + 2.0 * region.max_depth_std
 
 
-def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
-    """The same patch, with what chance comes to set to just less and just more than a fifth of its volume; its own ± decides nothing."""
+@pytest.mark.parametrize(("certainty", "of_all", "number"), [(4.9, 9.0, 0), (5.1, 9.0, 1), (9.0, 2.9, 0), (9.0, 3.1, 1)], ids=str)
+def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monkeypatch, certainty, of_all, number):
+    """The same patch, with what its cells come to by chance, and all of its ±, set to just more and just less."""
     cells = every_cell(GEAR, 0.5)
     flank = flanks_of(cells)
     flank[4, 0, 8:20, 4:16] = -0.1
@@ -46,19 +47,18 @@ def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
     volume = find_wear(patch, NOISE).volume
     assert volume == pytest.approx(0.1 * 144 * find_wear(patch, NOISE).side_maps.area[-1], rel=1e-3)
     filled = np.zeros_like(find_wear(patch, NOISE).depth)
-    for share, number in ((4.9, 0), (5.1, 1)):
-        given = Volumes(
-            np.array([volume]),
-            np.array([share]),
-            np.array([share]),
-            np.array([[volume**2]]),
-            filled,
-            np.full((1, 2), np.nan),
-            np.zeros(1, dtype=bool),
-            np.zeros(1),
-        )
-        monkeypatch.setattr(regions, "region_volumes", lambda *_, given=given: given)
-        assert len(find_wear(patch, NOISE).regions) == number
+    given = Volumes(
+        np.array([volume]),
+        np.array([certainty]),
+        np.array([certainty]),
+        np.array([[(volume / of_all) ** 2]]),
+        filled,
+        np.full((1, 2), np.nan),
+        np.zeros(1, dtype=bool),
+        np.zeros(1),
+    )
+    monkeypatch.setattr(regions, "region_volumes", lambda *_: given)
+    assert len(find_wear(patch, NOISE).regions) == number
 
 
 @pytest.mark.parametrize(("high", "low"), [(0.004, 0.004), (0.004, 0.0), (0.003, 0.001)])
