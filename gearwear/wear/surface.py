@@ -180,7 +180,7 @@ class SideSurface:
         there = np.any([inside[np.ix_(row, column)] for row, column in product(rows, columns)], axis=0)
         if not there.any():  # narrower than half a window, at an edge: no window has its middle there
             return np.nan, np.nan
-        by_rows = (along @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
+        by_rows = (sparse.csr_array(along) @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
         least = (across @ by_rows)[there].min(axis=0) + self.level
         return float(least.mean()), float(least.std())
 

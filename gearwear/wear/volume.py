@@ -74,6 +74,7 @@ def region_volumes(
     noise: float,
     loop: Loop | None,
     worn: frozenset[Side] = frozenset(),
+    known: bool = True,
 ) -> Volumes:
     """Volumes of the sides with worn cells.
 
@@ -94,6 +95,8 @@ def region_volumes(
     worn : frozenset of Side
         Sides worn throughout. Their flanks are alike, so each bends about the surface that they have in common, not about a flat one: a flank of
         few points would read too shallow where wear is steep, and every flank of the side alike.
+    known : bool
+        Whether to work out the covariance; nan without.
     """
     where, filled = np.argwhere(mask.any(axis=(2, 3))), filled.copy()
     number = len(where)
@@ -137,8 +140,10 @@ def region_volumes(
     if share.any():
         support = near + share[:, None, None] * rest
         summed = surfaces.over(support)
-        chance = errors.by_chance(summed, support, LEAST_PLACEBO)
-    covariance = chance + errors.of_wear(summed, support) + np.diag(share * (1.0 - share) * doubt)
+        chance = errors.by_chance(summed, support, LEAST_PLACEBO) if known else chance
+    covariance = np.full((number, number), np.nan)
+    if known:
+        covariance = chance + errors.of_wear(summed, support) + np.diag(share * (1.0 - share) * doubt)
     return Volumes(
         value=summed.value, certainty=certainty, together=together, covariance=covariance, filled=filled, deepest=surfaces.deepest,
         pitted=surfaces.pitted, rest=share,
