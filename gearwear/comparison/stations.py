@@ -149,7 +149,7 @@ def compare(
     worn = worn_profiles(ProfileNodes.of(grid), without_added_metal(surface.depth, wear.side_maps.area))
     left_in = effects if taken_out else None
     beyond: list[Callable[[], Any]] = [  # what needs neither the contact nor one another
-        partial(_lost, measured, unworn, left_in, as_made, scatter, partial(find, limits=False), wear, wear_before),
+        partial(_lost, measured, unworn, left_in, as_made, scatter, partial(find, limits=False, errors=False), wear, wear_before),
         partial(_thick, measured, unworn, left_in, wear),
         partial(_inspected, measured, inspection),
         partial(_solid, measured, worn, wear),

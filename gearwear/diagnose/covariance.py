@@ -58,6 +58,16 @@ class CellCovariance:
             result[block] += self.texture * spread.reshape(-1, columns.shape[1])
         return np.asarray(result, dtype=np.float64)
 
+    def on_side(self, side: tuple[int, int], values: Floats) -> Floats:
+        """The same of arrays (n, rows, columns) over the cells of a tooth side, its number of tooth and side given, that are 0 elsewhere."""
+        result = values * self.grid.side(self.white, *side)
+        if self.texture > 0.0:
+            rows = self.texture * _powers(self.row_step, values.shape[1])
+            for part in (slice(0, self.grid.fillet), slice(self.grid.fillet, None)):
+                own = values[..., part]
+                result[..., part] += rows @ own @ _powers(self.column_step, own.shape[2])
+        return np.asarray(result, dtype=np.float64)
+
 
 def _powers(step: float, count: int) -> Floats:
     index = np.arange(count)

@@ -264,6 +264,14 @@ class CellGrid:
         """Fillet and flank blocks of an array over cells side by side, (teeth, 2, rows, fillet + flank): from root to tip."""
         return np.concatenate([self.fillet_shape(values), self.flank_shape(values)], axis=-1)
 
+    def side(self, values: NDArray[Value], tooth: int, half: int) -> NDArray[Value]:
+        """The same of one tooth side, (rows, fillet + flank, …), of an array over cells, (m, …)."""
+        parts = []
+        for surface, columns in ((FILLET, self.fillet), (FLANK, self.flank)):
+            start, size = self.blocks[surface][0] + (2 * tooth + half) * self.rows * columns, self.rows * columns
+            parts.append(values[start : start + size].reshape(self.rows, columns, *values.shape[1:]))
+        return np.concatenate(parts, axis=1)
+
     def on_cells(self, sides: NDArray[Value]) -> NDArray[Value]:
         """The way back from `sides`: an array over all cells, (m,), zero (or False) on other surfaces."""
         result = np.zeros(self.count, dtype=sides.dtype)

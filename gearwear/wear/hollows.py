@@ -91,20 +91,20 @@ def find_hollows(
     # The radius itself, and the middles of equal parts of the band.
     reaches = np.array([band.reach, *(band.reach + band.half * ACROSS)]).clip(gear.form_roll, gear.tip_roll)
     columns, rows = grid.flank * (reaches**2 - edges[0]) / (edges[1] - edges[0]), grid.place_of(band.heights)
-    along = dict[tuple[int, Side], Floats]()
+    along = dict[tuple[int, Side], _Arcs]()
     for tooth, side in product(teeth.tolist(), Side):
         about = common.get(side.index)
         surface = means.surface(
             (tooth, side.index, slice(None), flank), wide[tooth, side.index, :, flank], None if about is None else about.surface
         )
         if surface is not None:
-            along[tooth, side] = gear.arc_per_depth * surface.along(rows, columns)
+            along[tooth, side] = _Arcs.of(gear.arc_per_depth * surface.along(rows, columns))
     # No smooth surface follows the ridge at the pitch point, which is more or less sharp along the face; the flanks of a side have it in common.
     for side in worn:
         own = [tooth for tooth in teeth.tolist() if (tooth, side) in along]
-        shared = np.median(np.stack([along[tooth, side].mean(axis=1) for tooth in own]), axis=0)[:, None] if own else 0.0
+        shared = np.median(np.stack([along[tooth, side].expected for tooth in own]), axis=0) if own else np.zeros(0)
         for tooth in own:
-            along[tooth, side] -= shared
+            along[tooth, side] = along[tooth, side].without(shared)
     known = [tooth for tooth in teeth.tolist() if all((tooth, side) in along for side in Side)]
     if not known:
         return None
@@ -112,10 +112,36 @@ def find_hollows(
     return Hollows(np.array(known), *(np.stack(values) for values in zip(*found, strict=True)))
 
 
-def _within(flanks: Sequence[Floats], number: Floats, made: Floats, width: int) -> tuple[Floats, Floats, Floats]:
-    """Depth and its standard deviation, (n_z,), and spread of each flank, (2, n_z), of arcs drawn for the two flanks,
-    (1 + k, draws, n_z) each, beyond those they were made with, (n_z,): at the radius, and in parts of the band. Sections have `number` (2, n_z) points."""
-    (_, draws, n), half = flanks[0].shape, width // 2
+@dataclass(frozen=True, slots=True)
+class _Arcs:
+    """Arcs drawn for a flank, mm: of all those in parts of the band together no more than is asked.
+
+    Parameters
+    ----------
+    at_radius, over_band : (draws, n_z) float
+        At the radius, and the mean of the parts of the band.
+    expected : (1 + k, n_z) float
+        Means over the draws, at the radius and in each part.
+    """
+
+    at_radius: Floats
+    over_band: Floats
+    expected: Floats
+
+    @classmethod
+    def of(cls, arcs: Floats) -> _Arcs:
+        """Of arcs at the radius and in parts of the band, (1 + k, draws, n_z)."""
+        return cls(arcs[0].copy(), arcs[1:].mean(axis=0), arcs.mean(axis=1))
+
+    def without(self, shared: Floats) -> _Arcs:
+        """The same less what flanks have in common, (1 + k, n_z)."""
+        return _Arcs(self.at_radius - shared[0], self.over_band - shared[1:].mean(axis=0), self.expected - shared)
+
+
+def _within(flanks: Sequence[_Arcs], number: Floats, made: Floats, width: int) -> tuple[Floats, Floats, Floats]:
+    """Depth and its standard deviation, (n_z,), and spread of each flank, (2, n_z), of arcs drawn for the two flanks beyond those they were made with,
+    (n_z,): at the radius, and in parts of the band. Sections have `number` (2, n_z) points."""
+    (draws, n), half = flanks[0].at_radius.shape, width // 2
     at = np.arange(n)[:, None] + np.arange(-half, half + 1)
     inside, at = (at >= 0) & (at < n), at.clip(0, n - 1)
     over_band, spread = [], []
@@ -127,20 +153,20 @@ def _within(flanks: Sequence[Floats], number: Floats, made: Floats, width: int) 
             """Over each window of values (..., n_z)."""
             return np.asarray((values[..., at] * share).sum(axis=-1), dtype=np.float64)
 
-        over_band.append(mean(arc[1:].mean(axis=0) + 0.5 * made))
-        drawn = arc[1:].mean(axis=1)
+        over_band.append(mean(arc.over_band + 0.5 * made))
+        drawn = arc.expected[1:]
         about = drawn - np.outer(ACROSS, ACROSS @ drawn) / (ACROSS @ ACROSS)  # the straight line is taken out
         spread.append(np.sqrt(np.maximum(mean(about**2).mean(axis=0) - mean(about).mean(axis=0) ** 2, 0.0)))
     # Windows side by side may leave a gap of up to half of one.
     reach = 2 * (half + (width - 1) // 4) + 1
-    expected = sum(arc[0].mean(axis=0) for arc in flanks) + made
+    expected = sum(arc.expected[0] for arc in flanks) + made
     # Of the surface that is expected: the least of one that is drawn is lower by its luck.
     depth = sum(band.mean(axis=0) for band in over_band) - ndimage.minimum_filter1d(expected, reach, mode="nearest")
     # Both flanks have the same random numbers: turned, they are independent; either way, as neither flank comes first.
     quarter, variance = draws // 4, np.zeros(n)
     for turned, still in ((0, 1), (1, 0)):
         at_radius, band = (
-            np.roll(values[turned], quarter, axis=0) + values[still] for values in ([arc[0] for arc in flanks], over_band)
+            np.roll(values[turned], quarter, axis=0) + values[still] for values in ([arc.at_radius for arc in flanks], over_band)
         )
         variance += 0.5 * (band - ndimage.minimum_filter1d(at_radius + made, reach, axis=1, mode="nearest")).var(axis=0)
     return depth, np.sqrt(variance), np.stack(spread)

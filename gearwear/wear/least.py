@@ -256,6 +256,15 @@ def _unit(shape: tuple[int, int]) -> Floats:
     return np.random.default_rng(0).normal(size=(2, DRAWS, *shape))
 
 
+@lru_cache(maxsize=2)
+def _correlated(shape: tuple[int, int], steps: tuple[float, float], window: tuple[int, int]) -> Floats:
+    """Means over windows of (2 `DRAWS`, rows, columns) draws of variance 1, correlated by `steps`, half of them the other way round: the same for all
+    surfaces of one shape."""
+    along, across = (_root(step, number) for step, number in zip(steps, shape, strict=True))
+    long = along @ _unit(shape)[1] @ across.T
+    return _over_windows(np.concatenate([long, long[:, ::-1]]), window)
+
+
 def _root(step: float, number: int) -> Floats:
     """Triangle whose products with white noise are correlated by `step` from one place to the next."""
     index = np.arange(number)
@@ -271,7 +280,7 @@ def _over_windows(values: Floats, window: tuple[int, int]) -> Floats:
 
 def least_mean(
     value: Floats,
-    where: Floats,
+    where: Bools,
     std: Floats,
     window: tuple[int, int],
     texture: float = 0.0,
@@ -304,13 +313,10 @@ def least_mean(
     known = np.where(where, np.sqrt(white + common), np.nan)
     apart = np.outer(*(_at_places(count, width) for count, width in zip(mean.shape, window, strict=True)))
     truths = unmixed(mean[where], known[where], apart[where])
-    unit = _unit(value.shape)
-    noise = np.concatenate([unit[0], unit[0, :, ::-1]]) * std  # which end comes first does not matter
+    unit = _unit(value.shape)[0]
+    noise = _over_windows(np.concatenate([unit, unit[:, ::-1]]) * std, window)[:, where]  # which end comes first does not matter
     if texture > 0.0:
-        along, across = (_root(s, n) for s, n in zip(steps, value.shape, strict=True))
-        long = np.sqrt(texture) * (along @ unit[1] @ across.T)
-        noise += np.concatenate([long, long[:, ::-1]])
-    noise = _over_windows(noise, window)[:, where]
+        noise += np.sqrt(texture) * _correlated(value.shape, steps, window)[:, where]
     drawn = [(truth + noise).min(axis=1) for truth in truths]
     bias = [again.mean() - truth.min() for again, truth in zip(drawn, truths, strict=True)]
     std_of = np.hypot(np.mean([again.std() for again in drawn]), UNSURE * abs(bias[0] - bias[1]))

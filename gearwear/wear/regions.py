@@ -209,6 +209,7 @@ def find_wear(
     loop: Loop | None = None,
     limits: bool = True,
     gone: Bools | None = None,
+    errors: bool = True,
 ) -> Wear:
     """Find the worn regions of a scan.
 
@@ -227,6 +228,8 @@ def find_wear(
         Whether to work out from what depth on wear would have been found (`Wear.flanks`).
     gone : (teeth, 2, rows, columns) bool or None
         Cells that are broken off: neither worn nor anything else.
+    errors : bool
+        Whether to work out how well volumes and depths are known, and what wear too faint to be found may come to; without, they are nan.
     """
     if gone is None:
         gone = np.zeros((cells.grid.gear.teeth, len(Side), cells.grid.rows, cells.grid.fillet + cells.grid.flank), dtype=bool)
@@ -273,7 +276,7 @@ def find_wear(
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
     wide = rim(mask, around) & allowed
-    volumes = region_volumes(cells, sheets, filled, mask, wide, allowed, noise, loop, worn)
+    volumes = region_volumes(cells, sheets, filled, mask, wide, allowed, noise, loop, worn, errors)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
@@ -303,6 +306,7 @@ def find_wear(
             cells.grid.size,
             noise,
             loop,
+            errors,
         )
         for (tooth, half), volume, std, deepest, pitted in zip(
             where[sure], value[sure], stds[sure], volumes.deepest[sure], volumes.pitted[sure], strict=True
@@ -314,8 +318,8 @@ def find_wear(
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
     looked_at = ~(rim(mask, around) | rim(at_ends, around))
-    faint = faint_wear(sheets, looked_at, noise, spread)
-    if loop is not None:
+    faint = faint_wear(sheets, looked_at, noise, spread) if errors else math.nan
+    if errors and loop is not None:
         faint = max(faint, faint_sides(cells, noise, loop, ~looked_at, sheets.area))
     unsure = sum(upper_limit(value, covariance, on_worn & ~sure & (where[:, 1] == side.index)) for side in worn)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop, gone) if limits else ()
@@ -361,19 +365,47 @@ def _region(
     size: float,
     noise: float,
     loop: Loop | None,
+    errors: bool,
 ) -> WearRegion:
     """The wear of one side: its cells are those `counted`, its deepest place and pieces are of those of them that stand out, `mask`."""
     standing, whole = mask[tooth, half], counted[tooth, half]
-    depth = np.where(standing, -filled[tooth, half], 0.0)
+    deepest, deep_std = float(surface[0]), math.nan
+    if errors or pitted or not np.isfinite(surface).all():
+        deepest, deep_std = _deepest(
+            sheets, np.where(standing, filled[tooth, half], 0.0), standing, tooth, half, surface, pitted, size, noise, loop
+        )
+    patches = int(ndimage.label(standing, np.ones((3, 3)))[1])
+    depth = np.where(whole, -filled[tooth, half], 0.0)
+    weight = np.where(whole & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
+    position = np.nan_to_num(sheets.position[tooth, half])
+    centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
+    area = float((whole * sheets.area).sum())
+    mean = float((depth * sheets.area).sum()) / area
+    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(standing) == 1, deep_std)
+
+
+def _deepest(
+    sheets: SideMaps,
+    deviation: Floats,
+    standing: Bools,
+    tooth: int,
+    half: int,
+    surface: Floats,
+    pitted: bool,
+    size: float,
+    noise: float,
+    loop: Loop | None,
+) -> tuple[float, float]:
+    """Depth of the deepest place among the cells of one side that stand out, and its standard deviation, mm."""
     window = max(1, round(DEEPEST_OVER / size))
-    rows = min(window, depth.shape[0])
+    rows = min(window, len(standing))
     white = noise / np.sqrt(np.maximum(sheets.count[tooth, half], 1.0))
     if loop is None:
-        least, deep_std, usual_std = least_mean(-depth, standing, white, (rows, window))
+        least, deep_std, usual_std = least_mean(deviation, standing, white, (rows, window))
     else:
         known = loop.covariance
         steps = (known.row_step, known.column_step)
-        least, deep_std, usual_std = least_mean(-depth, standing, white, (rows, window), known.texture, steps)
+        least, deep_std, usual_std = least_mean(deviation, standing, white, (rows, window), known.texture, steps)
         deep_std, usual_std = (math.hypot(std, loop.as_made_std[half]) for std in (deep_std, usual_std))
     deepest = -least
     if np.isfinite(surface).all():
@@ -384,11 +416,4 @@ def _region(
         if not pitted:
             deepest = expected
         deep_std = max(deep_std, 0.5 * apart)
-    patches = int(ndimage.label(standing, np.ones((3, 3)))[1])
-    depth = np.where(whole, -filled[tooth, half], 0.0)
-    weight = np.where(whole & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
-    position = np.nan_to_num(sheets.position[tooth, half])
-    centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
-    area = float((whole * sheets.area).sum())
-    mean = float((depth * sheets.area).sum()) / area
-    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(standing) == 1, deep_std)
+    return deepest, deep_std

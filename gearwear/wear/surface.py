@@ -61,8 +61,8 @@ class SideSurface:
         W B of these cells, mm⁻².
     data : (n, n) sparse
         BᵀWB, mm⁻².
-    prior : (bands, n) float
-        Q, lower bands.
+    stiffness, tension : float
+        τ, mm⁻², and κ².
     factor : (bands, n) float
         Cholesky factor of A, lower bands.
     expected : (n,) float
@@ -75,7 +75,8 @@ class SideSurface:
     seen: Bools
     gain: sparse.csr_array
     data: sparse.csr_array
-    prior: Floats
+    stiffness: float
+    tension: float
     factor: Floats
     expected: Floats
     level: float
@@ -105,7 +106,7 @@ class SideSurface:
         if seen.sum() < FEWEST_SEEN:
             return None
         weight = 1.0 / variance[seen]
-        lean, bend, eigenvalues = _laplacian(mean.shape)
+        bands, eigenvalues = len(_laplacian(mean.shape)[0]), _laplacian(mean.shape)[2]
         at, usual = _at_points(seen, offset, count), float(np.median(weight))
         transposed = sparse.csr_array(at.T)
         before = np.zeros(at.shape[1]) if about is None else about.expected + about.level
@@ -117,10 +118,7 @@ class SideSurface:
             gain = _rows_times(of, at)
             data = transposed @ gain
             data.sort_indices()
-            return gain, data, _lower(data, len(lean))
-
-        def prior(tension: float, decade: float) -> Floats:
-            return np.asarray(usual * 10.0**decade * (tension * lean + bend), dtype=np.float64)
+            return gain, data, _lower(data, bands)
 
         # As stiff as it is where it is worn: a hollow in a flat flank is steeper than the flank.
         inside = worn[seen] if worn[seen].sum() >= FEWEST_SEEN else np.ones(len(weight), dtype=bool)
@@ -128,18 +126,19 @@ class SideSurface:
         pull = gain.T @ value
 
         def freedom_and_fit(tension: float, decade: float) -> tuple[float, float]:
-            triangle = _cholesky(prior(tension, decade) + banded)
+            triangle = _cholesky(_prior(mean.shape, usual * 10.0**decade, tension) + banded)
             half = dtbtrs(triangle, pull, uplo="L")[0]
             own = float(np.log(usual * 10.0**decade * eigenvalues * (tension + eigenvalues)).sum())
             return 2.0 * float(np.log(triangle[0]).sum()) - own, float(half @ half)
 
-        before_seen = prior(*likeliest(freedom_and_fit))
+        tension, decade = likeliest(freedom_and_fit)
+        stiffness = usual * 10.0**decade
         if not inside.all():
             gain, data, banded = gains(weight)
-        triangle = _cholesky(before_seen + banded)
+        triangle = _cholesky(_prior(mean.shape, stiffness, tension) + banded)
         expected = before + cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
         value = (_over_cells(mean.shape) @ expected).reshape(mean.shape) + level
-        return cls(value, seen, gain, data, before_seen, triangle, expected, level)
+        return cls(value, seen, gain, data, stiffness, tension, triangle, expected, level)
 
     def shares(self, area: Floats) -> tuple[Floats, float]:
         """What each cell's mean weighs in the integral over `area` (rows, columns), mm², and the variance that the surface itself adds, mm⁶."""
@@ -180,7 +179,7 @@ class SideSurface:
         there = np.any([inside[np.ix_(row, column)] for row, column in product(rows, columns)], axis=0)
         if not there.any():  # narrower than half a window, at an edge: no window has its middle there
             return np.nan, np.nan
-        by_rows = (along @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
+        by_rows = (sparse.csr_array(along) @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
         least = (across @ by_rows)[there].min(axis=0) + self.level
         return float(least.mean()), float(least.std())
 
@@ -196,7 +195,7 @@ class SideSurface:
         matter."""
         turned = _from_other_end(shape)
         half = _random(self.data.shape[0])
-        from_above = _cholesky(self.prior + _lower(self.data, len(self.prior), turned))
+        from_above = _cholesky(_prior(shape, self.stiffness, self.tension) + _lower(self.data, len(self.factor), turned))
         drawn = np.hstack(
             [
                 dtbtrs(self.factor, half, uplo="L", trans="T")[0],
@@ -337,7 +336,7 @@ def _over_cells(shape: tuple[int, int]) -> sparse.csr_array:
 
 
 @lru_cache(maxsize=8)
-def _laplacian(shape: tuple[int, int]) -> tuple[Floats, Floats, Floats]:
+def _laplacian(shape: tuple[int, ...]) -> tuple[Floats, Floats, Floats]:
     """Lower bands of L and of L², as many as A has, and the eigenvalues of L but that of the level."""
     short, long = sorted(_coefficients(shape))
     laplacian = sparse.csr_array(
@@ -347,6 +346,12 @@ def _laplacian(shape: tuple[int, int]) -> tuple[Floats, Floats, Floats]:
     along, across = (2.0 - 2.0 * np.cos(np.pi * np.arange(n) / n) for n in (short, long))
     eigenvalues = (along[:, None] + across).ravel()[1:]
     return _lower(laplacian, number), _lower(sparse.csr_array(laplacian @ laplacian), number), eigenvalues
+
+
+def _prior(shape: tuple[int, ...], stiffness: float, tension: float) -> Floats:
+    """Q, lower bands."""
+    lean, bend, _ = _laplacian(shape)
+    return np.asarray(stiffness * (tension * lean + bend), dtype=np.float64)
 
 
 def _path(number: int) -> sparse.csr_array:

@@ -12,6 +12,7 @@ edges that are steeper than a cell is wide.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
 from gearwear.placing.side_maps import SideMaps
+from gearwear.wear.weights import SideWeights, by_side
 
 BEYOND_CHANCE = 3.0
 """Standard deviations of the variance in a column of cells on all flanks of a side from which on something else than noise is in it."""
@@ -52,7 +54,7 @@ def region_weights(sheets: SideMaps, regions: Bools | Floats) -> Floats:
     return np.asarray(seen * (whole / np.maximum(known, 1e-300))[:, None, None, None, None], dtype=np.float64)
 
 
-def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Floats) -> Floats:
+def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Floats | SideWeights) -> Floats:
     """Covariance of volumes from noise, texture, and what both leave uncertain of pose and effects.
 
     Parameters
@@ -63,7 +65,7 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
         Scatter of points, mm.
     loop : Loop or None
         What pose and effects were fitted in; None: noise alone.
-    weights : (k, teeth, 2, rows, columns) float
+    weights : SideWeights, or (k, teeth, 2, rows, columns) float
         What the deviation of each cell takes from each volume, mm².
 
     Returns
@@ -71,19 +73,68 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
     (k, k) float
         mm⁶.
     """
-    white = noise**2 / np.maximum(cells.count, 1.0)
-    wanted = np.column_stack([cells.grid.on_cells(weight) for weight in weights])
-    if loop is None:
-        return np.asarray(wanted.T @ (wanted * white[:, None]), dtype=np.float64)
-    model = loop.covariance
-    covariance = CellCovariance(cells.grid, white, model.texture, model.row_step, model.column_step)
-    columns, fields = model_columns(cells, loop)
-    weight = np.where(loop.use & cells.seen, covariance.weight, 0.0)
-    gram = Gram.of(columns, np.zeros(len(weight)), weight, np.zeros(len(weight), np.int64), 1)
-    _, inverse = gram.solve(np.arange(columns.shape[1]))
-    whole = wanted - weight[:, None] * (columns @ (inverse @ (columns.T @ wanted)))
-    form = wanted.T @ (fields if loop.hidden is None else np.hstack([fields, loop.hidden]))
-    return np.asarray(whole.T @ covariance.apply(whole) + form @ form.T, dtype=np.float64)
+    return CellErrors.of(cells, noise, loop).covariance_of(weights)
+
+
+@dataclass(frozen=True, slots=True)
+class CellErrors:
+    """What noise, texture, pose and effects make of sums over cells, by the formula above, multiplied out: so each tooth side is gone
+    through by itself.
+
+    Parameters
+    ----------
+    covariance : CellCovariance
+        Σ.
+    columns : (m, p) float
+        X.
+    inverse : (p, p) float
+        (XᵀWX)⁻¹.
+    through : (m, p) float
+        Σ W X.
+    spread : (p, p) float
+        Xᵀ W Σ W X.
+    fields : (m, q) float
+        How far the form of each effect may be wrong, and effects too small to be found, mm.
+    """
+
+    covariance: CellCovariance
+    columns: Floats
+    inverse: Floats
+    through: Floats
+    spread: Floats
+    fields: Floats
+
+    @classmethod
+    def of(cls, cells: Cells, noise: float, loop: Loop | None) -> CellErrors:
+        """Parameters as `noise_covariance`."""
+        white = noise**2 / np.maximum(cells.count, 1.0)
+        if loop is None:
+            none = np.zeros((len(white), 0))
+            return cls(CellCovariance(cells.grid, white, 0.0, 0.0, 0.0), none, none[:0], none, none[:0], none)
+        model = loop.covariance
+        covariance = CellCovariance(cells.grid, white, model.texture, model.row_step, model.column_step)
+        columns, fields = model_columns(cells, loop)
+        weight = np.where(loop.use & cells.seen, covariance.weight, 0.0)
+        gram = Gram.of(columns, np.zeros(len(weight)), weight, np.zeros(len(weight), np.int64), 1)
+        _, inverse = gram.solve(np.arange(columns.shape[1]))
+        weighted = columns * weight[:, None]
+        through = covariance.apply(weighted)
+        hidden = fields if loop.hidden is None else np.hstack([fields, loop.hidden])
+        return cls(covariance, columns, inverse, through, weighted.T @ through, hidden)
+
+    def covariance_of(self, weights: Floats | SideWeights) -> Floats:
+        """(k, k) of sums with these weights."""
+        number, grid = len(weights), self.covariance.grid
+        result, form = np.zeros((number, number)), np.zeros((number, self.fields.shape[1]))
+        moment, through = np.zeros((number, self.columns.shape[1])), np.zeros((number, self.columns.shape[1]))
+        for side, which, values in by_side(weights):
+            flat = values.reshape(len(which), -1)
+            result[np.ix_(which, which)] += flat @ self.covariance.on_side(side, values).reshape(len(which), -1).T
+            for sums, columns in ((moment, self.columns), (through, self.through), (form, self.fields)):
+                sums[which] += flat @ grid.side(columns, *side).reshape(flat.shape[1], columns.shape[1])
+        pull = moment @ self.inverse
+        mixed = through @ pull.T
+        return np.asarray(result - mixed - mixed.T + pull @ self.spread @ pull.T + form @ form.T, dtype=np.float64)
 
 
 def model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
@@ -149,7 +200,7 @@ def _beyond_on_all(sheets: SideMaps, by_slope: Floats, noise: float, side: Side)
     return np.asarray(np.where(beyond > BEYOND_CHANCE * noise**2 * np.sqrt(2.0 / whole), beyond, 0.0), dtype=np.float64)
 
 
-def edge_covariance(sheets: SideMaps, torn: Floats, slope: Floats, weights: Floats) -> Floats:
+def edge_covariance(sheets: SideMaps, torn: Floats, slope: Floats, weights: Floats | SideWeights) -> Floats:
     """Covariance of volumes from edges that are steeper than a cell is wide: the mean of such a cell depends on where its points lie.
 
     Parameters
@@ -157,7 +208,7 @@ def edge_covariance(sheets: SideMaps, torn: Floats, slope: Floats, weights: Floa
     sheets : SideMaps
     torn, slope : float
         From `torn_beyond`.
-    weights : (k, teeth, 2, rows, columns) float
+    weights : SideWeights, or (k, teeth, 2, rows, columns) float
         What each cell's deviation takes from the volume of each region, mm².
 
     Returns
@@ -184,15 +235,20 @@ def edge_covariance(sheets: SideMaps, torn: Floats, slope: Floats, weights: Floa
     )
     per_cell = np.sqrt(torn * share / places) * np.sign(slope)
     repeated, shared = _repeats(sheets)
-    result = np.zeros((len(weights), len(weights)))
-    for axis, along in ((0, -1), (1, -2)):
-        sides = np.stack(
-            [(weight * per_cell[axis]).sum(axis=along).sum(axis=0) for weight in weights]
-        )  # k, 2, strips: a region lies on one tooth
-        alike = np.einsum("ksi,lsi->kl", sides, sides)
-        single = np.array([((weight * per_cell[axis]) ** 2).sum() for weight in weights])
+    number = len(weights)
+    sides = [np.zeros((number, 2, count)) for count in per_cell.shape[3:]]  # strips: a region lies on one tooth
+    single = np.zeros((2, number))
+    for (tooth, half), which, values in by_side(weights):
+        for axis, along in ((0, -1), (1, -2)):
+            own = values * per_cell[axis, tooth, half]
+            sides[axis][which, half] += own.sum(axis=along)
+            single[axis, which] += (own**2).sum(axis=(1, 2))
+    result = np.zeros((number, number))
+    for axis in (0, 1):
+        strips = sides[axis].reshape(number, -1)
+        alike = strips @ strips.T
         result += shared[axis] * alike
-        result += np.diag((repeated[axis] - shared[axis]) * np.diag(alike) + (1.0 - repeated[axis]) * single)
+        result += np.diag((repeated[axis] - shared[axis]) * np.diag(alike) + (1.0 - repeated[axis]) * single[axis])
     return result
 
 

@@ -17,7 +17,8 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
 from gearwear.wear.surface import SideSurface
-from gearwear.wear.uncertainty import edge_covariance, ending_below, noise_covariance, region_weights, torn_beyond
+from gearwear.wear.uncertainty import CellErrors, edge_covariance, ending_below, region_weights, torn_beyond
+from gearwear.wear.weights import SideWeights, by_side
 
 DEEPEST_OVER = 0.5
 """Edge of the square, mm, over whose mean the deepest wear is stated."""
@@ -73,6 +74,7 @@ def region_volumes(
     noise: float,
     loop: Loop | None,
     worn: frozenset[Side] = frozenset(),
+    known: bool = True,
 ) -> Volumes:
     """Volumes of the sides with worn cells.
 
@@ -93,6 +95,8 @@ def region_volumes(
     worn : frozenset of Side
         Sides worn throughout. Their flanks are alike, so each bends about the surface that they have in common, not about a flat one: a flank of
         few points would read too shallow where wear is steep, and every flank of the side alike.
+    known : bool
+        Whether to work out the covariance; nan without.
     """
     where, filled = np.argwhere(mask.any(axis=(2, 3))), filled.copy()
     number = len(where)
@@ -105,7 +109,16 @@ def region_volumes(
     torn, slope = torn_beyond(sheets, filled, noise, worn)
     ending = ending_below(sheets, filled, noise, worn, cells.grid.gear.undercut)
     errors = _Errors(
-        cells=cells, sheets=sheets, mask=mask, wide=wide, noise=noise, loop=loop, torn=torn, slope=slope, ending=ending
+        cells=cells,
+        known=CellErrors.of(cells, noise, loop),
+        sheets=sheets,
+        mask=mask,
+        wide=wide,
+        noise=noise,
+        loop=loop,
+        torn=torn,
+        slope=slope,
+        ending=ending,
     )
     surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
     near = wide[tuple(where.T)].astype(np.float64)
@@ -127,8 +140,10 @@ def region_volumes(
     if share.any():
         support = near + share[:, None, None] * rest
         summed = surfaces.over(support)
-        chance = errors.by_chance(summed, support, LEAST_PLACEBO)
-    covariance = chance + errors.of_wear(summed, support) + np.diag(share * (1.0 - share) * doubt)
+        chance = errors.by_chance(summed, support, LEAST_PLACEBO) if known else chance
+    covariance = np.full((number, number), np.nan)
+    if known:
+        covariance = chance + errors.of_wear(summed, support) + np.diag(share * (1.0 - share) * doubt)
     return Volumes(
         value=summed.value, certainty=certainty, together=together, covariance=covariance, filled=filled, deepest=surfaces.deepest,
         pitted=surfaces.pitted, rest=share,
@@ -156,11 +171,11 @@ def share_of_rest(more: Floats, variance: Floats) -> Floats:
 
 @dataclass(frozen=True, slots=True)
 class _Integral:
-    """Integrals over regions: `value` (k,) mm³, `weights` (k, teeth, 2, rows, columns) mm², what each cell takes from them, `shape` (k, k) mm⁶, what the
+    """Integrals over regions: `value` (k,) mm³, `weights` mm², what each cell takes from them, `shape` (k, k) mm⁶, what the
     surfaces leave open of them."""
 
     value: Floats
-    weights: Floats
+    weights: SideWeights
     shape: Floats
 
 
@@ -227,40 +242,43 @@ class _Surfaces:
     def over(self, support: Floats) -> _Integral:
         """Integrals over `support` (k, rows, columns), the share of each cell that counts."""
         sheets, number = self.sheets, len(self.where)
-        value, hidden, weights = np.zeros(number), np.zeros(number), np.zeros((number, *sheets.count.shape))
+        value, hidden, weights = np.zeros(number), np.zeros(number), np.zeros(support.shape)
         left = dict[int, Floats]()
         for i, part, surface in self.parts:
             share = support[i][:, part]
             if not share.any():
                 continue
             side = (int(self.where[i, 0]), int(self.where[i, 1]))
-            at = (*side, slice(None), part)
             if surface is not None:
                 area = share * sheets.area[part]
-                weights[(i, *at)], spread = surface.shares(area)
+                weights[i][:, part], spread = surface.shares(area)
                 volume = -float((surface.value * area).sum())
                 if part.start and self.common.get(side[1]) is not None:
                     left[i] = surface.left_to_before(area)
             else:
-                volume, weights[(i, *at)], spread = _without_surface(sheets, at, share)
+                volume, weights[i][:, part], spread = _without_surface(sheets, (*side, slice(None), part), share)
             value[i] += volume
             hidden[i] += spread
-        shape, flank = np.diag(hidden), slice(sheets.fillet, None)
+        shape, passed, shares = np.diag(hidden), dict[int, Floats](), dict[int, Floats]()
         for j, shared_surface in self.common.items():
             among = [i for i in left if self.where[i, 1] == j]
             if shared_surface is not None and among:
-                passed, unknown = shared_surface.surface.passed_on(np.stack([left[i] for i in among]))
-                weights[among, :, j, :, flank] += passed[:, None] * shared_surface.share
+                before = (*[(0, 0)] * 2, (sheets.fillet, 0))  # fillets have no surface in common
+                passed[j] = np.zeros(weights.shape)
+                flanks, unknown = shared_surface.surface.passed_on(np.stack([left[i] for i in among]))
+                passed[j][among] = np.pad(flanks, before)
+                shares[j] = np.pad(shared_surface.share, before)
                 shape[np.ix_(among, among)] += unknown
-        return _Integral(value, weights, shape)
+        return _Integral(value, SideWeights(self.where, weights, passed, shares), shape)
 
 
 @dataclass(frozen=True, slots=True)
 class _Errors:
-    """What the errors of cells make of integrals over regions; `torn` and `slope` as `torn_beyond` gives them, `ending` as
-    `ending_below`, the others as `region_volumes` has them."""
+    """What the errors of cells make of integrals over regions: those that are `known`, and what else; `torn` and `slope` as `torn_beyond` gives them,
+    `ending` as `ending_below`, the others as `region_volumes` has them."""
 
     cells: Cells
+    known: CellErrors
     sheets: SideMaps
     mask: Bools
     wide: Bools
@@ -273,23 +291,24 @@ class _Errors:
     def by_chance(self, integral: _Integral, support: Floats, least: float = 0.0) -> Floats:
         """Covariance, mm⁶, where nothing is worn, of integrals over `support` (k, rows, columns); sides without wear are asked of which more than the
         share `least` of it is seen."""
-        weights, count = integral.weights, self.cells.grid.sides(self.cells.count)
-        known = noise_covariance(self.cells, self.noise, self.loop, weights)
+        weights, number = integral.weights, len(support)
+        known, white = self.known.covariance_of(weights), np.zeros(number)
         # What the model of the errors does not know: the same cells on sides without wear; failing those, the unworn cells of all sides.
-        white = (weights**2 * (self.noise**2 / np.maximum(count, 1.0))).sum(axis=(1, 2, 3, 4))
-        shared, scatter = np.zeros(len(weights)), np.zeros(len(weights))
+        for side, which, values in weights.by_side():
+            of_points = self.noise**2 / np.maximum(self.cells.grid.side(self.cells.count, *side), 1.0)
+            white[which] += (values**2 * of_points).sum(axis=(1, 2))
+        shared, scatter = np.zeros(number), np.zeros(number)
         for i, here in enumerate(support):
             placebo, expected = _placebo(self.sheets, self.mask, self.wide, here, self.noise, least)
             if len(placebo) >= FEWEST_SIDES:
                 shared[i], scatter[i] = placebo.mean(), placebo.var() - expected
-        return known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
+        return np.asarray(known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared))
 
     def of_wear(self, integral: _Integral, support: Floats) -> Floats:
         """Covariance, mm⁶, by what only wear has, of integrals over `support`: steep places between the points and in holes, where it ends below the
         form circle, and no unworn place on its side."""
         weights = integral.weights
-        areas = np.zeros_like(weights)
-        areas[(np.arange(len(weights)), *np.argwhere(self.mask.any(axis=(2, 3))).T)] = support * self.sheets.area
+        areas = SideWeights(weights.where, support * self.sheets.area, {}, {})
         return (
             integral.shape
             + edge_covariance(self.sheets, self.torn, self.slope, weights)
@@ -298,21 +317,25 @@ class _Errors:
             + self._of_made(weights)
         )
 
-    def _of_made(self, weights: Floats) -> Floats:
+    def _of_made(self, weights: SideWeights) -> Floats:
         """Covariance, mm⁶, by how high sides worn throughout may stand as they were made (`Loop.made`)."""
         if self.loop is None or self.loop.made is None:
             return np.zeros((len(weights), len(weights)))
-        wanted = np.column_stack([self.cells.grid.on_cells(weight) for weight in weights])
-        level = wanted.T @ self.loop.made
+        level = np.zeros((len(weights), self.loop.made.shape[1]))
+        for side, which, values in weights.by_side():
+            level[which] += np.tensordot(values, self.cells.grid.side(self.loop.made, *side), axes=2)
         return np.asarray(level @ level.T, dtype=np.float64)
 
 
-def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:
+def unexplained_covariance(loop: Loop | None, weights: Floats | SideWeights) -> Floats:
     """Covariance, mm⁶, by patterns round the gear that have no name: drawn on under the wear of a flank from those beside it, they may be off by
     their own size there. A pattern that all teeth share is known from the other teeth."""
     rms = 0.0 if loop is None else math.sqrt(sum(pattern.rms**2 for pattern in loop.patterns if pattern.order > 0))
-    offset = rms * weights.sum(axis=(3, 4)).reshape(len(weights), -1)
-    return np.asarray(offset @ offset.T, dtype=np.float64)
+    result = np.zeros((len(weights), len(weights)))
+    for _, which, values in by_side(weights) if rms > 0.0 else ():
+        offset = rms * values.sum(axis=(1, 2))
+        result[np.ix_(which, which)] += np.outer(offset, offset)
+    return result
 
 
 def _deepest_pit(

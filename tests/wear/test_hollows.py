@@ -10,7 +10,7 @@ import pytest
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.placing.cells import CellGrid, bin_points
-from gearwear.wear.hollows import ACROSS, _within, find_hollows
+from gearwear.wear.hollows import ACROSS, _Arcs, _within, find_hollows
 from gearwear.wear.regions import find_wear
 from gearwear.wear.section_sums import SectionBand, SectionSums
 from gearwear.wear.thickness import SectionThickness, section_thickness
@@ -90,19 +90,19 @@ def test_within_a_window_a_parabola_hides_what_its_mean_says():
     a, half, n = 0.001, 4, 41
     parabola, flat = a * (np.arange(n) - 20.0) ** 2, np.zeros(n)
     curve = np.tile(parabola, (1 + len(ACROSS), 8, 1))
-    depth, std, spread = _within([curve, curve], ALIKE, flat, 2 * half + 1)
+    depth, std, spread = _within([_Arcs.of(curve)] * 2, ALIKE, flat, 2 * half + 1)
     assert depth[20] == pytest.approx(2.0 * a * half * (half + 1) / 3.0)
     assert spread[:, 20] == pytest.approx([(a * np.arange(-half, half + 1) ** 2).std()] * 2)
     assert std == pytest.approx(flat, abs=1e-12)
     # The same as it was made with spreads nothing that a scan of few points could miss.
-    by_make = _within([0.0 * curve, 0.0 * curve], ALIKE, 2.0 * parabola, 2 * half + 1)
+    by_make = _within([_Arcs.of(0.0 * curve)] * 2, ALIKE, 2.0 * parabola, 2 * half + 1)
     assert by_make[0] == pytest.approx(depth)
     assert by_make[2] == pytest.approx(np.zeros((2, n)), abs=1e-12)
     # Cut off at the end of the face; the least is looked for half a window beyond its own.
     assert depth[0] == pytest.approx(2.0 * (parabola[: half + 1].mean() - parabola[half + 2]))
     # The band lies 5 µm above the radius itself.
     above = curve + 0.005 * (np.arange(len(curve)) > 0)[:, None, None]
-    assert _within([above, curve], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)
+    assert _within([_Arcs.of(above), _Arcs.of(curve)], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)
 
 
 def test_the_mean_of_a_section_is_that_of_its_points():
@@ -111,7 +111,7 @@ def test_the_mean_of_a_section_is_that_of_its_points():
     parabola = a * (np.arange(n) - 20.0) ** 2
     curve, number = np.tile(parabola, (1 + len(ACROSS), 8, 1)), np.zeros((2, n))
     number[0, 23], number[1, 20] = 12.0, 12.0
-    depth, _, spread = _within([curve, curve], number, np.zeros(n), 9)
+    depth, _, spread = _within([_Arcs.of(curve)] * 2, number, np.zeros(n), 9)
     assert depth[20] == pytest.approx(a * 3.0**2, rel=1e-5)
     assert spread[:, 20] == pytest.approx([0.0, 0.0], abs=1e-5)
 
@@ -120,7 +120,7 @@ def test_a_lean_across_the_band_hides_nothing_and_spreads_nothing():
     """Sections have the straight line through their points."""
     curve = np.zeros((1 + len(ACROSS), 8, 41))
     curve[1:] += 0.05 * ACROSS[:, None, None]
-    for values in _within([curve, 0.0 * curve], ALIKE, np.zeros(41), 5):
+    for values in _within([_Arcs.of(curve), _Arcs.of(0.0 * curve)], ALIKE, np.zeros(41), 5):
         assert values == pytest.approx(np.zeros(values.shape), abs=1e-12)
 
 
