@@ -66,7 +66,7 @@ class Taken:
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class Remedy:
     """What is to be taken out of views next.
 
     Parameters
@@ -115,7 +115,7 @@ def odd_one_out(accords: Sequence[ViewAccord], noise: float) -> Bools:
     return np.asarray(alone & known & (np.abs(own - middle) > STDS * spread) & (makes > NOISES * noise), dtype=np.bool_)
 
 
-def verdict(accords: Accords, noise: float, spreads: Sequence[Floats], before: Sequence[Taken]) -> Verdict:
+def remedy(accords: Accords, noise: float, spreads: Sequence[Floats], before: Sequence[Taken]) -> Remedy:
     """What the overlaps show beyond doubt: scales first, as they bend the views' own places; then offsets; then places.
 
     Parameters
@@ -134,10 +134,10 @@ def verdict(accords: Accords, noise: float, spreads: Sequence[Floats], before: S
         off = [wrong(one, noise) or _is_left(one, out, at) for one, out in zip(views, before, strict=True)]
         if any(off):
             taken = (_one(one, at) if is_off else Taken() for one, is_off in zip(views, off, strict=True))
-            return Verdict(tuple(taken), 2 * sum(off) < enough)
+            return Remedy(tuple(taken), 2 * sum(off) < enough)
     if any(out_of_place(one, noise) for one in views):
-        return Verdict(_moved(accords, spreads), True)
-    return Verdict(tuple(Taken() for _ in views), True)
+        return Remedy(_moved(accords, spreads), True)
+    return Remedy(tuple(Taken() for _ in views), True)
 
 
 def _is_left(accord: ViewAccord, before: Taken, at: int) -> bool:

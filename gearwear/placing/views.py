@@ -18,7 +18,7 @@ from gearwear.placing.accord import ViewAccord, view_accords
 from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.pose import Pose
 from gearwear.placing.registration import Registration, refine, register, rough_pose
-from gearwear.placing.together import Taken, spread_columns, summed, verdict
+from gearwear.placing.together import Taken, remedy, spread_columns, summed
 from gearwear.robust import evenly_drawn
 
 DRAWN_BY = 2e-4
@@ -250,7 +250,7 @@ def _joined(
         kept, offset, mismatch = _thin_overlap(overlap, label, overlapping.position)
         accords = view_accords(overlap.views, noise, ignore)
         found = found or Found(offset, mismatch, accords.views)
-        next_ = verdict(accords, noise, [registration.covariance for registration in registrations], taken)
+        next_ = remedy(accords, noise, [registration.covariance for registration in registrations], taken)
         if not next_.any or not rounds_left:
             break
         if narrow:  # the lands of a view that is off lie where the first view's bands hold only some of their points

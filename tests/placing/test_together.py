@@ -11,7 +11,7 @@ from gearwear.design.surface import FLANK, OTHER, SurfacePoints, locate
 from gearwear.placing.accord import OFFSET, OWN, SCALE, view_accords
 from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.placing.pose import small_motion
-from gearwear.placing.together import Taken, doubtful, odd_one_out, said_of_views, spread_columns, summed, verdict
+from gearwear.placing.together import Taken, doubtful, odd_one_out, remedy, said_of_views, spread_columns, summed
 from gearwear.placing.views import PlacedScan, place
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Recipe, SyntheticScan, Views, make_scan
@@ -143,7 +143,7 @@ def test_a_place_is_taken_out_as_far_as_overlaps_tell_it():
     motion = np.array([0.015, -0.01, 0.0, 0.0, 0.0, math.radians(0.02)])
     spreads = [np.diag([2e-3, 2e-3, 2e-3, 1e-4, 1e-4, 1e-4]) ** 2] * 3
     accords = view_accords(binned_views(motion), 1e-3 * NOISE)
-    found = verdict(accords, 1e-3 * NOISE, spreads, [Taken()] * 3)
+    found = remedy(accords, 1e-3 * NOISE, spreads, [Taken()] * 3)
     moved = np.array([one.motion for one in found.taken])
     std = np.sqrt([np.diag(one.covariance)[:6] for one in found.taken])
     others = moved[1:].mean(axis=0)
@@ -151,7 +151,7 @@ def test_a_place_is_taken_out_as_far_as_overlaps_tell_it():
     assert np.abs(moved.sum(axis=0)).max() < 0.2 * np.abs(motion).max()
     assert all(one.scale == 0.0 and one.offset == 0.0 for one in found.taken)
     quiet = view_accords(binned_views(np.zeros(6)), 1e-3 * NOISE)
-    assert not verdict(quiet, 1e-3 * NOISE, spreads, [Taken()] * 3).any
+    assert not remedy(quiet, 1e-3 * NOISE, spreads, [Taken()] * 3).any
 
 
 def test_what_taking_out_leaves_uncertain():
