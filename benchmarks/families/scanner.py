@@ -34,7 +34,8 @@ class Hole:
 class ViewError:
     """What is wrong with some views (none named: with all): a small turn (rad) and shift (mm) about the gear's middle, a scale, fringes, an offset.
 
-    An offset (mm) lies on every surface, along its normal, as a coat of its own or another exposure. Fringes are a wave of `amplitude` (mm) along the line of sight, `wavelength` mm across it in the direction `across`.
+    An offset (mm) lies on every surface, along its normal, as a coat of its own or another exposure. Fringes are a wave of `amplitude` (mm) along the
+    line of sight, `wavelength` mm across it in the direction `across`.
     """
 
     views: tuple[int, ...]

@@ -9,8 +9,8 @@ saw tell nothing, and cells that k views saw tell k − 1 numbers: what is betwe
   the design tells; a common offset is a coat and a common scale the scanner's, which the loop looks for. If more than half of the views agree in an offset
   or a scale, it is stated against their mean, and the others are wrong. Of two views that differ, and of halves, which is wrong is not told: then it is
   stated against the median.
-- **Told by the design, view by view**: each view's own place and scale by its own fit, with what wear and cutting errors do to that; less well, but
-  without overlaps too. The drawing's errors are in the scales of all views alike: only their differences count.
+- **Told by the design, view by view**: each view's own place, offset and scale by its own fit, with what wear and cutting errors do to that; less
+  well, but without overlaps too. The drawing's errors are in those of all views alike: only their differences count.
 """
 
 from __future__ import annotations
@@ -64,6 +64,8 @@ class ViewAccord:
         The part of it that flanks have in common and noise does not make, root mean square, mm; 0 where it may be chance.
     own_scale, own_scale_std : float
         How much larger than designed its own fit to the design shows the gear, relative; 0 and infinite where that is not told.
+    own_offset, own_offset_std : float
+        How far above the design its surface stands by that fit, mm.
     reach : float
         What a scale makes in its cells on flanks and lands, its mean apart: root mean square, mm per unit.
     """
@@ -80,6 +82,8 @@ class ViewAccord:
     torn: float = 0.0
     own_scale: float = 0.0
     own_scale_std: float = np.inf
+    own_offset: float = 0.0
+    own_offset_std: float = np.inf
     reach: float = 0.0
 
     @property
@@ -255,7 +259,7 @@ def _torn(rest: Floats, weight: Floats, of: Ints, flank: Ints, views: int) -> tu
 
 
 def _alone(view: Cells, shared: int, noise: float, ignore: frozenset[int]) -> ViewAccord:
-    """What a view tells by itself: its scale by its own fit to the design, with the spread by tooth sides."""
+    """What a view tells by itself: its scale and offset by its own fit to the design, with their spread by tooth sides."""
     points, usual = view.points, float(np.median(view.count[view.seen])) if view.seen.any() else 0.0
     datum = choose_datum(view, noise, ignore)
     part = np.flatnonzero(view.seen & datum.mask & (points.surface < END_LOW) & (view.count >= max(2.0, 0.2 * usual)))
@@ -274,9 +278,15 @@ def _alone(view: Cells, shared: int, noise: float, ignore: frozenset[int]) -> Vi
         share, slope = tukey_weight(residual, scale), tukey_slope(residual, scale)
     cluster = (points.surface[part].astype(np.int64) * view.grid.gear.teeth + points.tooth[part]) * 2 + (points.side[part] > 0)
     spread = clustered(a, share * weight * residual, slope * weight, cluster)
-    own, std = solution[SCALE] / size[SCALE], np.sqrt(spread[SCALE, SCALE]) / size[SCALE]
-    reach = float(np.std(a[:, SCALE] * size[SCALE]))
-    return ViewAccord(shared=shared, own_scale=float(own), own_scale_std=float(std) or np.inf, reach=reach)
+    own, std = solution / size, np.where(np.diag(spread) > 0.0, np.sqrt(np.maximum(np.diag(spread), 0.0)) / size, np.inf)
+    return ViewAccord(
+        shared=shared,
+        own_scale=float(own[SCALE]),
+        own_scale_std=float(std[SCALE]),
+        own_offset=float(own[OFFSET]),
+        own_offset_std=float(std[OFFSET]),
+        reach=float(np.std(a[:, SCALE] * size[SCALE])),
+    )
 
 
 def _accord(

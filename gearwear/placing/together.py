@@ -101,18 +101,23 @@ def out_of_place(accord: ViewAccord, noise: float) -> bool:
     return accord.enough and accord.place > max(STDS * accord.place_std, NOISES * noise)
 
 
-def odd_one_out(accords: Sequence[ViewAccord], noise: float) -> Bools:
-    """(n,) views that overlap the others too little to be judged, and whose own fit to the design has another scale than theirs."""
-    own = np.array([accord.own_scale for accord in accords])
-    std = np.array([accord.own_scale_std for accord in accords])
-    known = np.isfinite(std)
-    if known.sum() < 2 or all(accord.enough for accord in accords):
-        return np.zeros(len(accords), dtype=np.bool_)
-    middle = float(np.median(own[known]))
-    spread = np.hypot(std, np.median(std[known]))
-    alone = np.array([not accord.enough for accord in accords])
-    makes = np.array([accord.reach for accord in accords]) * np.abs(own - middle)
-    return np.asarray(alone & known & (np.abs(own - middle) > STDS * spread) & (makes > NOISES * noise), dtype=np.bool_)
+def odd_ones_out(accords: Sequence[ViewAccord], noise: float) -> tuple[Bools, Bools]:
+    """Views that overlap the others too little to be judged, and whose own fits to the design have another scale than theirs, (n,); another offset, (n,)."""
+    alone = np.array([not accord.enough for accord in accords], dtype=np.bool_)
+    reach = np.array([accord.reach for accord in accords])
+    scale = np.array([(accord.own_scale, accord.own_scale_std) for accord in accords]).reshape(-1, 2)
+    offset = np.array([(accord.own_offset, accord.own_offset_std) for accord in accords]).reshape(-1, 2)
+    return alone & _unlike(scale, reach, noise), alone & _unlike(offset, np.ones(len(reach)), noise)
+
+
+def _unlike(known: Floats, makes: Floats, noise: float) -> Bools:
+    """(n,) which of some values, (n, 2) with their standard deviations, are unlike their median; `makes` is what a unit makes of points, mm."""
+    value, std = known.T
+    told = np.isfinite(std)
+    if told.sum() < 2:
+        return np.zeros(len(value), dtype=np.bool_)
+    off = np.abs(value - np.median(value[told]))
+    return np.asarray(told & (off > STDS * np.hypot(std, np.median(std[told]))) & (makes * off > NOISES * noise), dtype=np.bool_)
 
 
 def remedy(accords: Accords, noise: float, spreads: Sequence[Floats], before: Sequence[Taken]) -> Remedy:
@@ -222,7 +227,7 @@ def said_of_views(
     scatters : sequence of float
         That of each view alone.
     """
-    worst, odd = max((accord.torn for accord in accords), default=0.0), odd_one_out(accords, noise)
+    worst, odd = max((accord.torn for accord in accords), default=0.0), odd_ones_out(accords, noise)
     rough, usual = scattered(scatters), float(np.median(scatters)) if len(scatters) else 0.0
     said = []
     for number, (accord, out) in enumerate(zip(accords, taken, strict=True), 1):
@@ -237,10 +242,19 @@ def said_of_views(
                 f"points of view {number} scatter by {significant(1e3 * scatters[number - 1], 2)} µm, those of a typical view by {significant(1e3 * usual, 2)}"
                 " µm: it may be badly stitched within itself"
             )
-        if odd[number - 1]:
+        its = []
+        if odd[0][number - 1]:
+            way = "large" if accord.own_scale > 0.0 else "small"
+            its.append(f"shows the gear {1e6 * abs(accord.own_scale):.0f} ± {1e6 * accord.own_scale_std:.0f} ppm too {way}")
+        if odd[1][number - 1]:
+            way = "above" if accord.own_offset > 0.0 else "below"
+            its.append(
+                f"puts its surface {1e3 * abs(accord.own_offset):.1f} ± {1e3 * accord.own_offset_std:.1f} µm {way} the design"
+            )
+        if its:
             said.append(
-                f"view {number} overlaps the others too little to be judged by them, and its own fit to the design shows the gear"
-                f" {1e6 * accord.own_scale:.0f} ± {1e6 * accord.own_scale_std:.0f} ppm too large, unlike theirs: it may be out of scale"
+                f"view {number} overlaps the others too little to be judged by them, and its own fit to the design {' and '.join(its)}, unlike theirs:"
+                " it may be wrong, and was left as it is"
             )
     if not told:
         said.append("which views are right the overlaps do not tell: a scale or an offset of all that is left may be theirs")
@@ -255,7 +269,7 @@ def _is_torn(accord: ViewAccord, noise: float) -> bool:
 def doubtful(accords: Sequence[ViewAccord], told: bool, noise: float, scatters: Sequence[float]) -> bool:
     """Whether something may be wrong with a view that could not be taken out of it: effects of all may be its own then."""
     torn = any(_is_torn(accord, noise) for accord in accords) or bool(scattered(scatters).any())
-    return not told or torn or bool(odd_one_out(accords, noise).any())
+    return not told or torn or any(bool(odd.any()) for odd in odd_ones_out(accords, noise))
 
 
 def scattered(scatters: Sequence[float]) -> Bools:
@@ -270,7 +284,8 @@ def _said_of(number: int, accord: ViewAccord, taken: Taken, told: bool, noise: f
     if taken.scale != 0.0:
         much = f"{1e6 * abs(taken.scale):.0f} ± {1e6 * float(np.sqrt(taken.covariance[SCALE, SCALE])):.0f} ppm"
         way = "large" if taken.scale > 0.0 else "small"
-        said.append(f"view {number} is out of scale: it shows the gear {much} too {way} against {others}; taken out")
+        which = f"view {number} is out of scale: it" if told else f"view {number}"
+        said.append(f"{which} shows the gear {much} too {way} against {others}; taken out")
     if taken.offset != 0.0:
         much = f"{1e3 * abs(taken.offset):.1f} ± {1e3 * float(np.sqrt(taken.covariance[OFFSET, OFFSET])):.1f} µm"
         way = "above" if taken.offset > 0.0 else "below"

@@ -11,7 +11,7 @@ from gearwear.design.surface import FLANK, OTHER, SurfacePoints, locate
 from gearwear.placing.accord import OFFSET, OWN, SCALE, view_accords
 from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.placing.pose import small_motion
-from gearwear.placing.together import Taken, doubtful, odd_one_out, remedy, said_of_views, spread_columns, summed
+from gearwear.placing.together import Taken, doubtful, odd_ones_out, remedy, said_of_views, spread_columns, summed
 from gearwear.placing.views import PlacedScan, place
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Recipe, SyntheticScan, Views, make_scan
@@ -110,12 +110,20 @@ def test_views_that_hardly_overlap_are_judged_by_their_own_fits():
     scan = make_scan(replace(RECIPE, views=Views(3, 0.0)), 3)
     plain = place(scan.views, GEAR, [None] * 3)
     wrong = place([*scan.views[:2], scan.views[2] * 1.003], GEAR, [None] * 3)
-    assert not odd_one_out([view.accord for view in plain.views], 1e-3 * NOISE).any() and not said(plain)
-    assert odd_one_out([view.accord for view in wrong.views], 1e-3 * NOISE).tolist() == [False, False, True]
+    assert not np.any(odd_ones_out([view.accord for view in plain.views], 1e-3 * NOISE)) and not said(plain)
+    assert odd_ones_out([view.accord for view in wrong.views], 1e-3 * NOISE)[0].tolist() == [False, False, True]
     assert not any(view.taken.any for view in wrong.views)
     accord = wrong.views[2].accord
     assert abs(accord.own_scale - 3e-3) < 5.0 * accord.own_scale_std + 1e-4
     assert "view 3 overlaps the others too little" in said(wrong)
+    lifted = make_scan(replace(RECIPE, views=Views(3, 0.0), effects=(Effect("coating", {"thickness_um": COAT}),)), 3)
+    proud = place([lifted.views[0], *scan.views[1:]], GEAR, [None] * 3)
+    assert np.array(odd_ones_out([view.accord for view in proud.views], 1e-3 * NOISE)).tolist() == [
+        [False] * 3,
+        [True, False, False],
+    ]
+    accord = proud.views[0].accord
+    assert abs(accord.own_offset - 1e-3 * COAT) < 5.0 * accord.own_offset_std
 
 
 def test_a_view_stitched_of_two_pieces_is_doubted():

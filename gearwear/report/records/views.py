@@ -15,13 +15,14 @@ from gearwear.report.records.numbers import Json
 def view_record(view: View) -> Json:
     """A view, but for its pose: how it was found against the others, and what was taken out of it."""
     accord = view.accord
-    own = math.isfinite(accord.own_scale_std)
+    own = math.isfinite(accord.own_scale_std) and math.isfinite(accord.own_offset_std)
     return {
         "points": view.points, "kept": view.kept, "noise_um": 1e3 * view.registration.noise, "offset_um": 1e3 * view.offset, "mismatch_um": 1e3 * view.mismatch,
         "shared_cells": accord.shared, "place_um": 1e3 * accord.place, "stands_um": 1e3 * accord.offset,
         "stands_std_um": 1e3 * accord.offset_std, "scale_ppm": 1e6 * accord.scale, "scale_std_ppm": 1e6 * accord.scale_std,
         "residual_um": 1e3 * accord.residual, "torn_um": 1e3 * accord.torn, "own_scale_ppm": 1e6 * accord.own_scale if own else math.nan,
-        "own_scale_std_ppm": 1e6 * accord.own_scale_std if own else math.nan, "mismatch_left_um": 1e3 * view.left,
+        "own_scale_std_ppm": 1e6 * accord.own_scale_std if own else math.nan, "own_offset_um": 1e3 * accord.own_offset if own else math.nan,
+        "own_offset_std_um": 1e3 * accord.own_offset_std if own else math.nan, "mismatch_left_um": 1e3 * view.left,
         "taken_out": _taken_record(view.taken) if view.taken.any else None,
     }  # fmt: skip
 
