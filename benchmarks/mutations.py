@@ -52,6 +52,14 @@ MUTATIONS = [
         ("inspection/radial.py", "0.01 * math.sqrt(d) + 0.8", "0.01 * math.sqrt(d) + 0.08", "inspection/test_radial.py"),
         ("inspection/radial.py", "1.0, 1.5, 2.5, 4.0", "1.0, 1.5, 2.0, 4.0", "inspection/test_radial.py"),
         ("brep/ends.py", "END_TOLERANCE = 2e-8", "END_TOLERANCE = 2e-3", "brep/test_ends.py"),
+        # views brought to each other
+        ("placing/accord.py", "STDS = 5.0", "STDS = 50.0", "placing/test_together.py"),
+        ("placing/accord.py", "raised * covariance, information / raised", "9.0 * covariance, information / raised", "placing/test_together.py"),
+        ("placing/together.py", "NOISES, LEAST = 0.5, 0.2", "NOISES, LEAST = 5.0, 0.2", "placing/test_together.py"),
+        ("placing/together.py", "NOISES, LEAST = 0.5, 0.2", "NOISES, LEAST = 0.5, 2.0", "placing/test_together.py"),
+        ("placing/together.py", "ROUGHER = 1.25", "ROUGHER = 4.0", "placing/test_together.py"),
+        ("comparison/placed_notes.py", "math.hypot(std, level)", "std", "comparison/test_views.py"),
+        ("placing/views.py", "at[:, None] * spread_columns", "spread_columns", "comparison/test_views.py"),
         # what survived in version 0.1.0
         ("scan/units.py", "there = ratio * UNITS[name] / UNITS[scan.units]", "there = ratio * UNITS[name]", "scan/test_units.py"),
         ("scan/units.py", "ratio[0] * UNITS[unit] / UNITS[scan.units])", "ratio[0] * UNITS[unit])", "scan/test_units.py"),

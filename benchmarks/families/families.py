@@ -445,6 +445,40 @@ def _some_flanks(rng: Rng, points: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _files(rng: Rng, points: int) -> dict[str, Any]:
+    """Three to six files, each of the views of one sector, and one fault in one of them."""
+    g, tools, f = _plain(rng)
+    files, worn = int(rng.choice([3, 4, 5, 6])), str(rng.choice(["unworn", "patches", "a side"], p=[0.3, 0.4, 0.3]))
+    fault = str(rng.choice(["scale", "offset", "moved", "half moved", "none"], p=[0.4, 0.25, 0.1, 0.05, 0.2]))
+    which, sign = int(rng.integers(files)), float(rng.choice([-1.0, 1.0]))
+    base = draws.scanner(rng, g, points)
+    views = replace(base.views, azimuths=4 * files)
+    sector = views.sector(which, files)
+    match fault:
+        case "scale":
+            errors: tuple[ViewError, ...] = (ViewError(sector, scale=sign * log_uniform(rng, 5e-4, 3e-3)),)
+        case "offset":
+            errors = (ViewError(sector, offset=sign * float(rng.uniform(0.005, 0.02))),)
+        case "moved" | "half moved":
+            way, axis = (v / np.linalg.norm(v) for v in rng.standard_normal((2, 3)))
+            shift, turn = float(rng.uniform(0.01, 0.06)) * way, math.radians(float(rng.uniform(0.02, 0.1))) * axis
+            half = sector if fault == "moved" else views.sector(2 * which, 2 * files)
+            errors = (ViewError(half, tuple(turn.tolist()), tuple(shift.tolist())),)
+        case _:
+            errors = ()
+    wear: tuple[Field, ...] = ()
+    if worn == "patches":
+        wear = draws.patches(rng, f)
+    elif worn == "a side":
+        wear = (draws.sliding(rng, f, int(rng.choice([-1, 1])), log_uniform(rng, 0.006, 0.03) * g.module, False),)
+    scanner = replace(base, views=views, files=files, view_errors=errors)
+    wrong = fault in ("scale", "offset", "half moved")
+    return {
+        "what": fault, "part": Part(g, tools, (), wear), "design": draws.design_of(g, tools[0]), "scanner": scanner,
+        "outside": "half moved" if fault == "half moved" else "", "may_name": (*(("view_registration",) if wrong else ()), *_also(scanner)),
+    }  # fmt: skip
+
+
 FAMILIES: Mapping[str, Family] = {
     "a": Family("unknown root", _root),
     "b": Family("modified profiles", _profiles),
@@ -462,4 +496,5 @@ FAMILIES: Mapping[str, Family] = {
     "n": Family("modified as drawn", _as_drawn),
     "o": Family("class 6 to 10 as cut", _as_cut),
     "p": Family("some flanks worn all over", _some_flanks),
+    "q": Family("several files, one of them wrong", _files),
 }

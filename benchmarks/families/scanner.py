@@ -32,9 +32,10 @@ class Hole:
 
 @dataclass(frozen=True, eq=False)
 class ViewError:
-    """What is wrong with some views (none named: with all): a small turn (rad) and shift (mm) about the gear's middle, a scale, fringes.
+    """What is wrong with some views (none named: with all): a small turn (rad) and shift (mm) about the gear's middle, a scale, fringes, an offset.
 
-    Fringes are a wave of `amplitude` (mm) along the line of sight, `wavelength` mm across it in the direction `across`.
+    An offset (mm) lies on every surface, along its normal, as a coat of its own or another exposure. Fringes are a wave of `amplitude` (mm) along the
+    line of sight, `wavelength` mm across it in the direction `across`.
     """
 
     views: tuple[int, ...]
@@ -45,6 +46,7 @@ class ViewError:
     wavelength: float = 1.0
     across: float = 0.0
     phase: float = 0.0
+    offset: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +146,7 @@ def scan(part: Part, scanner: Scanner, seed: int) -> Scan:
     xyz += error
     spread = float(np.std((error * normal).sum(axis=1)[flank] + height[flank])) if flank.any() else math.nan
     for wrong in scanner.view_errors:
-        xyz = _misplace(part, xyz, view, ways, wrong)
+        xyz = _misplace(part, xyz, normal, view, ways, wrong)
     if scanner.smoothing:
         xyz = _smoothed(xyz, normal, scanner.smoothing)
     kind, file = points.kind.copy(), view * scanner.files // len(ways) if scanner.files > 1 else np.zeros(len(view), dtype=int)
@@ -200,11 +202,15 @@ def _collect(part: Part, scanner: Scanner, rng: np.random.Generator) -> tuple[Po
     return points.take(chosen), view[chosen], cosine[chosen]
 
 
-def _misplace(part: Part, xyz: Array, view: Ints, ways: Array, wrong: ViewError) -> Array:
+def _misplace(part: Part, xyz: Array, normal: Array, view: Ints, ways: Array, wrong: ViewError) -> Array:
     """Some views off their place."""
     here = np.isin(view, wrong.views) if wrong.views else np.ones(len(xyz), dtype=bool)
     middle = np.array([0.0, 0.0, 0.5 * part.gear.face_width])
-    moved = Rotation.from_rotvec(wrong.turn).apply(xyz[here] - middle) * (1.0 + wrong.scale) + middle + np.array(wrong.shift)
+    moved = (
+        Rotation.from_rotvec(wrong.turn).apply(xyz[here] + wrong.offset * normal[here] - middle) * (1.0 + wrong.scale)
+        + middle
+        + np.array(wrong.shift)
+    )
     if wrong.amplitude:
         sight = ways[view[here]]
         fixed = np.array([math.cos(wrong.across), math.sin(wrong.across), 0.4])

@@ -14,7 +14,7 @@ from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.collecting import Cut
 from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.passes import Streamed, first_pass, grid_of_sample, last_pass, moved, relocated_pass
-from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
+from gearwear.comparison.placed_notes import beside_views, doubts_of, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, FinalMotion, Relocation, clip_of, is_far, with_pits
 from gearwear.comparison.stated import at_20_degrees, check_streamed, tooth_1_of, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
@@ -525,7 +525,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     def closed(loop: Loop, decided: bool) -> MeasuredGear:
         """With a loop; of the points of a streamed scan in all cells only where it is the one decided for, else these are moved along."""
         motion, located = FinalMotion.of(placed, loop, gear, again)
-        result = replace(measured, placed=placed, first=first, loop=loop)
+        result = replace(measured, placed=placed, first=first, loop=beside_views(loop, placed, first, noise))
         if measured.streamed is None:
             return replace(result, final=FinalPlace(located, motion.pose, with_pits(located, grid)))
         cells = moved(first, -loop.motion)

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
+import numpy as np
+
 from gearwear.design.gear import Gear
-from gearwear.design.surface import SurfacePoints
-from gearwear.placing.cells import shared_errors
+from gearwear.design.side import Side
+from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.diagnose.effects.base import MEASURED
+from gearwear.diagnose.effects.view_registration import VIEW_REGISTRATION
+from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.diagnose.loop import LEVEL_GROUP
+from gearwear.placing.cells import Cells, shared_errors
 from gearwear.placing.refusal import doubtful_distance, flanks_off
+from gearwear.placing.together import doubtful, said_of_views
 from gearwear.placing.views import PlacedScan
 
 SHARED = 0.5
@@ -32,8 +43,38 @@ def doubts_of(gear: Gear, drawn: Gear, placed: PlacedScan, noise: float) -> tupl
         said.append(
             f"the teeth of the scan are {gear.face_width:.4g} mm wide, and the design's face_width is {drawn.face_width:g} mm: taken as seen"
         )
-    views = (view.accord.doubt(i, noise) for i, view in enumerate(placed.views, 1))
-    return (*said, *filter(None, views))
+    views = placed.views
+    accords, scatters = [view.accord for view in views], [view.registration.noise for view in views]
+    return (*said, *said_of_views(accords, [view.taken for view in views], placed.told, noise, scatters))
+
+
+def beside_views(loop: Loop, placed: PlacedScan, cells: Cells, noise: float) -> Loop:
+    """A loop that was closed on several views, with what these leave open.
+
+    Where something is wrong with a view that could not be taken out of it, what was named of the whole scan may be that: what scanner and mounting did,
+    levels, and what every tooth has of its own. What was taken out of a view is no better known than the overlaps tell: that is among what is hidden.
+    """
+    accords, scatters = [view.accord for view in placed.views], [view.registration.noise for view in placed.views]
+    if doubtful(accords, placed.told, noise, scatters):
+        loop = replace(loop, effects=tuple(_or_a_view(effect) for effect in loop.effects))
+    if placed.shares is None:
+        return loop
+    columns = np.where(cells.seen[:, None], np.nan_to_num(placed.spread(cells.points)), 0.0)
+    hidden = columns if loop.hidden is None else np.hstack([loop.hidden, columns])
+    flank = cells.seen & (cells.points.surface == FLANK)
+    sides = [columns[flank & (cells.points.side == side)] for side in Side]
+    more = [float(np.linalg.norm(its.mean(axis=0))) if len(its) else 0.0 for its in sides]
+    left, right = (math.hypot(std, level) for std, level in zip(loop.level_std, more, strict=True))
+    return replace(loop, hidden=hidden, level_std=(left, right))
+
+
+def _or_a_view(effect: FoundEffect) -> FoundEffect:
+    """The effect with a view among its alternatives, where it may be one's own."""
+    known = effect.candidate.effect
+    own = known.kind in MEASURED or known.group == LEVEL_GROUP or known.tooth_specific
+    if not own or effect.name == VIEW_REGISTRATION:
+        return effect
+    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, VIEW_REGISTRATION})))
 
 
 def smoothing_of(located: SurfacePoints, noise: float, views: int) -> tuple[str, ...]:

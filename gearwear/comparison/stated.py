@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearwear.arrays import Bools
+from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.spec import DatumSpec
 from gearwear.design.surface import SURFACE_NAMES, locate
@@ -89,8 +89,8 @@ def without_ignored(scans: Sequence[Scan], placed: PlacedScan, gear: Gear, datum
         raise InputError(f"[datum] ignore_teeth = {beyond[0]}: teeth from 1 to {gear.teeth} would be right")
     if gear.teeth - len(set(datum.ignore_teeth)) < LEAST_TEETH:
         raise InputError(f"[datum] ignore_teeth leaves less than {LEAST_TEETH} teeth")
-    poses = [view.registration.pose for view in placed.views] or [placed.registration.pose]
-    left = tuple(kept(scan, ~_ignored(scan, pose, gear, datum)) for scan, pose in zip(scans, poses, strict=True))
+    onto = [view.apply for view in placed.views] or [placed.registration.pose.apply]
+    left = tuple(kept(scan, ~_ignored(apply(scan.points), gear, datum)) for scan, apply in zip(scans, onto, strict=True))
     if min(len(scan) for scan in left) < 0.05 * min(len(scan) for scan in scans):
         raise InputError(
             "[datum] ignore, ignore_teeth and ignore_z_mm leave less than a twentieth of a scan: too little to measure"
@@ -98,8 +98,7 @@ def without_ignored(scans: Sequence[Scan], placed: PlacedScan, gear: Gear, datum
     return left
 
 
-def _ignored(scan: Scan, pose: Pose, gear: Gear, datum: DatumSpec) -> Bools:
-    points = pose.apply(scan.points)
+def _ignored(points: Floats, gear: Gear, datum: DatumSpec) -> Bools:
     located = locate(points, gear)
     names = np.array(SURFACE_NAMES)[located.surface]
     mask: Bools = np.isin(names, datum.ignore) | (np.isin(located.tooth, datum.ignore_teeth) & ~np.isin(names, WHOLE))

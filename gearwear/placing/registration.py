@@ -252,7 +252,7 @@ def _inverse(information: Floats) -> Floats:
     return np.asarray((vector[:, keep] / value[keep]) @ vector[:, keep].T / np.outer(scale, scale))
 
 
-def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints) -> Floats:
+def clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints) -> Floats:
     """Covariance of a robust fit whose residuals belong together in clusters.
 
     Parameters
@@ -531,7 +531,7 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     residual = d - columns @ solution
     p = cells.points
     cluster = (surface.astype(np.int64) * cells.grid.gear.teeth + p.tooth[part]) * 2 + (p.side[part] > 0)
-    sandwich = _clustered(columns, weight * residual, tukey_slope(residual, scale) * base, cluster)
+    sandwich = clustered(columns, weight * residual, tukey_slope(residual, scale) * base, cluster)
     motion, covariance = np.zeros(6), np.zeros((6, 6))
     motion[free] = -solution[:moving]
     covariance[np.ix_(free, free)] = sandwich[:moving, :moving]

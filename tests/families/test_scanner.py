@@ -156,6 +156,18 @@ def test_a_view_out_of_scale_moves_its_sector_only():
     assert moved[moved > 1e-3] == pytest.approx(expected[moved > 1e-3], abs=3e-5)
 
 
+def test_an_offset_of_a_view_lifts_its_sector_off_the_metal():
+    views = Views()
+    plain = back(scan(PART, replace(QUIET, views=views), 9))
+    lifted = back(scan(PART, replace(QUIET, views=views, view_errors=(ViewError(views.sector(1, 4), offset=0.02),)), 9)) - plain
+    size = np.linalg.norm(lifted, axis=1)
+    here = size > 1e-3
+    assert 0.1 < here.mean() < 0.45
+    assert size[here] == pytest.approx(np.full(here.sum(), 0.02), abs=3e-5)
+    end = here & (np.abs(plain[:, 2] - 12.0) < 1e-3) & (np.abs(lifted[:, 2]) > 0.019)
+    assert end.sum() > 20 and (lifted[end, 2] > 0.0).all()  # outwards
+
+
 def test_fringes_move_along_the_line_of_sight():
     views = Views()
     wrong = ViewError((), amplitude=0.005, wavelength=3.0)

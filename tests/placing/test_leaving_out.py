@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gearwear.placing.registration import _clustered
+from gearwear.placing.registration import clustered
 
 
 def test_each_cluster_counts_for_what_leaving_it_out_changes():
@@ -13,5 +13,5 @@ def test_each_cluster_counts_for_what_leaving_it_out_changes():
     target = random.normal(size=6)[cluster] + 0.1 * random.normal(size=len(cluster))
     whole = np.linalg.lstsq(columns, target, rcond=None)[0]
     moved = [whole - np.linalg.lstsq(columns[cluster != one], target[cluster != one], rcond=None)[0] for one in range(6)]
-    covariance = _clustered(columns, target - columns @ whole, np.ones(len(cluster)), cluster)
+    covariance = clustered(columns, target - columns @ whole, np.ones(len(cluster)), cluster)
     np.testing.assert_allclose(covariance, np.einsum("gi,gj->ij", moved, moved), rtol=1e-10)

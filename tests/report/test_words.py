@@ -144,7 +144,7 @@ def seen_only(results, shares):
 
 def with_views(results, *converged):
     registration = results.measured.placed.registration
-    views = tuple(View(replace(registration, converged=one), 9, 9, 0.0, 0.0, ViewAccord(0)) for one in converged)
+    views = tuple(View(replace(registration, converged=one), 9, 9, 0.0, 0.0, ViewAccord(shared=0)) for one in converged)
     return changed(results, "measured.placed.views", views)
 
 

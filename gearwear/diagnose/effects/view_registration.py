@@ -13,6 +13,8 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, seam_deviation, turning
 from gearwear.diagnose.parameter import Parameter, ParameterEstimate, Spread, angular
 
+VIEW_REGISTRATION = "view_registration"
+"""The effect that puts a view beside the others."""
 STEP = math.radians(30.0)
 """Grid of starts."""
 
@@ -28,7 +30,7 @@ class ViewRegistration(CatalogueEffect):
     only ends would show well, are left out.
     """
 
-    name: ClassVar[str] = "view_registration"
+    name: ClassVar[str] = VIEW_REGISTRATION
     kind: ClassVar[Kind] = Kind.MEASUREMENT
     source: ClassVar[str] = "own definition: rigid motion of one sector in the plane of rotation"
     tells_apart: ClassVar[str] = (

@@ -393,7 +393,9 @@ def registration(results: Results) -> Section:
         (
             str(i + 1), _yes(view.registration.converged), number(view.points, 0), number(view.kept, 0), significant(1e3 * view.offset, 2),
             significant(1e3 * view.mismatch, 2), significant(1e3 * view.accord.place, 2),
-            with_std(1e6 * view.accord.scale, 1e6 * view.accord.scale_std or None, "ppm"), significant(1e3 * view.accord.residual, 2), row(view.registration.pose.translation.tolist(), 4),
+            with_std(1e3 * view.accord.offset, 1e3 * view.accord.offset_std or None, "µm"),
+            with_std(1e6 * view.accord.scale, 1e6 * view.accord.scale_std or None, "ppm"), significant(1e3 * view.accord.residual, 2),
+            significant(1e3 * view.left, 2) if view.taken.any else "", row(view.registration.pose.translation.tolist(), 4),
         )
         for i, view in enumerate(placed.views)
     ]  # fmt: skip
@@ -405,8 +407,10 @@ def registration(results: Results) -> Section:
         "offset, µm",
         "mismatch with its neighbours, µm",
         "of that: place, µm",
+        "level",
         "scale",
         "rest, µm",
+        "left once it was taken out, µm",
         "translation, mm",
     )
     return Section("registration", "Registration", "Registration: how the scan was laid on the design", blocks(

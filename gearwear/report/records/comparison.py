@@ -28,6 +28,7 @@ from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.numbers import Json, parameters_record, value_std, value_std_unit
 from gearwear.report.records.running import running_record
 from gearwear.report.records.teeth import mark_record, pattern_values, same_teeth_record
+from gearwear.report.records.views import view_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words, weighed_words
 from gearwear.wear.regions import Wear
@@ -189,9 +190,7 @@ def _registration(results: Results) -> Json:
         "fitting_share": registration.fitting,
         "notes": list(registration.notes),
         "views": [
-            {**_pose(view.registration), "points": view.points, "kept": view.kept, "offset_um": 1e3 * view.offset,
-             "mismatch_um": 1e3 * view.mismatch, "shared_cells": view.accord.shared, "place_um": 1e3 * view.accord.place,
-             "scale_ppm": 1e6 * view.accord.scale, "scale_std_ppm": 1e6 * view.accord.scale_std, "residual_um": 1e3 * view.accord.residual}
+            {**_pose(view.registration), **view_record(view)}
             for view in placed.views
         ],
     }  # fmt: skip
