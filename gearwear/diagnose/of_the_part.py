@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Bools
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.effects.edge_rounding import EDGE_ROUNDING
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.flank_columns import any_profile, on_each_side
 from gearwear.diagnose.gram import Gram
@@ -58,7 +59,8 @@ def of_the_form(fit: Fit, problem: Problem, model: Model) -> tuple[Model, Mappin
         return np.asarray(left >= rules().stands_in * alone, dtype=np.bool_)
 
     def by_scanner(candidate: Candidate) -> bool:
-        return candidate.effect.kind is Kind.MEASUREMENT
+        """Whether the scanner may not have done it at all: edges every scan rounds."""
+        return candidate.effect.kind is Kind.MEASUREMENT and candidate.name != EDGE_ROUNDING
 
     taken_out = {c.name for i, c in enumerate(model) if by_scanner(c) and not told([c], model[:i] + model[i + 1 :])[0]}
     if not taken_out:
