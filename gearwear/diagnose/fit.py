@@ -15,6 +15,7 @@ from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.judge import sandwich
+from gearwear.diagnose.own_waves import beyond_texture, neighbouring_waves, order_of
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.shapes import shape_columns
@@ -229,6 +230,14 @@ class Fit:
             np.concatenate([np.arange(part.start, part.stop), np.arange(low, high)])
             for part, (low, high) in zip(parts, pairwise(ends.tolist()), strict=True)
         ]
+        for candidate, part, at in zip(model, parts, places, strict=True):
+            if candidate.effect.tooth_specific or candidate.effect.kind is Kind.FORM:
+                continue
+            order = order_of(self.cells.grid, own[:, part] @ amplitudes[part])
+            if order > 0:
+                waves = neighbouring_waves(self.cells.grid, self.residual(model), self.use, order)
+                pulls = inverse[at] @ (columns.T @ (self.weight[:, None] * waves))
+                spread[np.ix_(at, at)] += beyond_texture(pulls, spread[np.ix_(at, at)])
         return spread, places
 
 

@@ -1,0 +1,65 @@
+"""Waves round the gear that are its own: what those of neighbouring orders let expect of the order an effect has.
+
+An effect of one order round the gear (an ovality of the scanner's scale, a wobble) is not told from a wave of that order that the gear was made with. Errors
+of gears fall off smoothly with the order, so the waves of the orders next to it, which no effect claims, say how large its own may be. Texture
+differs from tooth to tooth and makes waves of all orders alike; it is in the covariance already.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import chdtri
+
+from gearwear.arrays import Bools, Floats
+from gearwear.diagnose.pattern import order_share
+from gearwear.diagnose.rules import rules
+from gearwear.placing.cells import CellGrid
+
+HIGHEST_ORDER = 4
+"""Of an effect that is looked at; the next ones decide what is its own."""
+NEIGHBOURS = 2
+"""Orders up, and down, that are its neighbours."""
+LEAST_ORDER = 2
+"""Of a neighbour: the pose has taken what it can of order 1."""
+
+
+def order_of(grid: CellGrid, field: Floats) -> int:
+    """Order round the gear that most of an effect's field (m,) is of; 0 where it is none from 1 on."""
+    seen = np.where(grid.on_cells(np.ones_like(grid.sides(field), dtype=np.bool_)), field, np.nan)
+    shares = (
+        {order: order_share(grid, seen, order) for order in range(1, HIGHEST_ORDER + 1)} if np.nanmax(np.abs(seen)) > 0.0 else {}
+    )
+    order = max(shares, key=lambda one: shares[one], default=0)
+    return order if shares.get(order, 0.0) > rules().own_order else 0
+
+
+def neighbouring_waves(grid: CellGrid, residual: Floats, use: Bools, order: int) -> Floats:
+    """What a residual (m,) has of the orders next to one, each turned into a wave of that order, as it is and a quarter further round: (m, k) mm.
+
+    Nothing where a tooth was not seen, for of a part of the gear no order is known by itself, or where there is one neighbour alone.
+    """
+    teeth = grid.gear.teeth
+    sides = np.where(grid.sides(use), grid.sides(residual), 0.0)
+    orders = [k for k in range(max(order - NEIGHBOURS, LEAST_ORDER), order + NEIGHBOURS + 1) if k != order and 2 * k < teeth]
+    if len(orders) < 2 or not grid.sides(use).any(axis=(1, 2, 3)).all():
+        return np.zeros((len(residual), 0))
+    angle = 2.0 * np.pi * np.arange(teeth) / teeth
+    waves = []
+    for k in orders:
+        height = 2.0 / teeth * np.tensordot(np.exp(-1j * k * angle), sides, axes=(0, 0))
+        turned = np.exp(1j * order * angle)[:, None, None, None] * height
+        waves += [grid.on_cells(np.ascontiguousarray(part)) for part in (turned.real, -turned.imag)]
+    return np.column_stack(waves)
+
+
+def beyond_texture(pulls: Floats, spread: Floats) -> Floats:
+    """Covariance (q, q) that waves add to amplitudes of covariance `spread` (q, q), which these waves pull by `pulls` (q, k): nothing where they are no
+    larger than the texture in `spread` makes by chance, else what they are beyond it. A variance known from k pulls is that of Student's t: larger by
+    k / (k − 2)."""
+    count = pulls.shape[1]
+    if not count or not np.isfinite(spread).all():
+        return np.zeros_like(spread)
+    ratio = float(np.einsum("ik,ij,jk->", pulls, np.linalg.pinv(spread), pulls)) / (count * len(spread))
+    if ratio < float(chdtri(count, rules().significance)) / count:
+        return np.zeros_like(spread)
+    return np.asarray((1.0 - 1.0 / ratio) * pulls @ pulls.T / (count - 2), dtype=np.float64)
