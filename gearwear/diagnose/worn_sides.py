@@ -2,8 +2,8 @@
 
 What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or a profile that the flanks
 of a side, or of both, share: a grinding wheel dressed for one side gives it a form of its own. Worn is a loss of the shape that wear has, in which every tooth may have its own
-share; against a profile of one side, any loss that is least at the pitch point, where its form is larger than flanks of the gear's class are cut with: a smaller one
-is as likely made. Profiles and losses alike pay for what they need of their freedom. Each is fitted to the same cells, and no cell is left out for
+share; against a profile of one side, any loss that is least at the pitch point, where it differs from tooth to tooth or its form is larger than flanks of the gear's
+class are cut with: a smaller one that all teeth have alike is as likely made. Profiles and losses alike pay for what they need of their freedom. Each is fitted to the same cells, and no cell is left out for
 what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows the fit would let each
 hypothesis leave out what speaks against it.
 """
@@ -114,9 +114,10 @@ def _believed(cells: Cells, context: Context, noise: float) -> Bools:
 
 @dataclass(frozen=True, slots=True)
 class _Loss:
-    """What flanks may have lost, (m,) mm, the mean of all teeth, and the cost with it."""
+    """What flanks may have lost, (m,) mm, the mean of all teeth; the cost with it, and where all teeth have lost the same."""
 
     cost: float
+    of_all: float
     loss: Floats
 
 
@@ -222,7 +223,8 @@ class _Scan:
     def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> float | None:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
 
-        A loss of no shape that wear has by itself, and of a form that flanks of the gear's class may be cut with, costs no less than `unworn`.
+        A loss of no shape that wear has by itself, which all teeth have alike and flanks of the gear's class may be cut with, costs no less than
+        `unworn`.
         """
         cells, context = self.fit.cells, self.problem.context
         law, sides = wear_columns(cells, context, worn)
@@ -246,7 +248,8 @@ class _Scan:
             allowed = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
             for law, on in any_wear_columns(cells, context, worn):
                 for lost in self.losses(model, worn, law, on):
-                    costs.append(lost.cost if self._form(lost.loss, side) > allowed else max(lost.cost, unworn))
+                    as_cut = lost.cost > lost.of_all - rules().errors_by_tooth ** 2 and self._form(lost.loss, side) <= allowed
+                    costs.append(max(lost.cost, unworn) if as_cut else lost.cost)
         return min(costs, default=None)
 
     def _form(self, loss: Floats, side: Side) -> float:
@@ -305,9 +308,10 @@ class _Scan:
         if float((share <= 0.0).mean()) > rules().blank_flanks:
             return []
         if share.min() < 0.0:
-            return [_Loss(common, loss)]
+            return [_Loss(common, common, loss)]
         shares = rules().parameter_penalty * (by_tooth.count - len(worn))
-        return [_Loss(common, loss), _Loss(alone.square / self.problem.unit + price + shares + self._named(searched), loss)]
+        own = alone.square / self.problem.unit + price + shares + self._named(searched)
+        return [_Loss(common, common, loss), _Loss(own, common, loss)]
 
     def _known(self, model: Model) -> Model:
         """A model with what is in every one, to begin with."""

@@ -33,8 +33,8 @@ RIM = 0.2
 LEAST_VOLUME = 5.0
 """Least volume of a region in the standard deviations of its own cells."""
 BEYOND_CHANCE = 3.0
-"""The same in all of its standard deviation, with what pose and effects add, which cells have in common. Of pits, which are known by their number, the
-95 % interval lies above nothing."""
+"""The same in all of its standard deviation, with what pose and effects add, which cells have in common; or of its deepest place in that one's. Of the
+volume of pits, which are known by their number, the 95 % interval lies above nothing."""
 LEAST_VOLUME_OF_WORN_SIDE = 2.0
 """The same of all flanks of a side that is known to be worn throughout, together: no flank of it need prove it by itself, and to leave out those that
 do not would leave out what they lost."""
@@ -282,36 +282,38 @@ def find_wear(
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     stds = np.sqrt(np.diag(covariance))
     at = tuple(where.T)
-    by_itself = np.where(least[at] == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE)
-    sure = (volumes.certainty > least[at]) & (whole[at] | (value > by_itself * stds))
     on_worn = np.isin(where[:, 1], [side.index for side in worn])
-    sure |= on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE)
+    sure = (volumes.certainty > least[at]) | (on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE))
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     counted = mask.copy()
     for tooth, half in where[sure & (volumes.rest > 0.5)]:
         counted[tooth, half, :, sheets.fillet :] |= allowed[tooth, half, :, sheets.fillet :]
-    regions = [
-        _region(
+    beyond_chance = np.where(least[at] == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE) * stds
+    regions = []
+    for i in np.flatnonzero(sure):
+        region = _region(
             sheets,
             filled,
             mask,
             counted,
-            int(tooth),
-            int(half),
-            float(volume),
-            float(std),
-            deepest,
-            bool(pitted),
+            int(where[i, 0]),
+            int(where[i, 1]),
+            float(value[i]),
+            float(stds[i]),
+            volumes.deepest[i],
+            bool(volumes.pitted[i]),
             cells.grid.size,
             noise,
             loop,
             errors,
         )
-        for (tooth, half), volume, std, deepest, pitted in zip(
-            where[sure], value[sure], stds[sure], volumes.deepest[sure], volumes.pitted[sure], strict=True
-        )
-    ]
+        deep = region.max_depth > BEYOND_CHANCE * region.max_depth_std
+        if whole[tuple(where[i])] or deep or region.volume > beyond_chance[i]:
+            regions.append(region)
+        else:
+            sure[i] = False
+            mask[tuple(where[i])] = counted[tuple(where[i])] = False
     regions.sort(key=lambda region: -region.volume)
     unseen = sum(region.max_depth * float(beyond[region.tooth, region.side.index].sum()) for region in regions)
     mask, depth = counted, np.where(counted, -filled, 0.0)

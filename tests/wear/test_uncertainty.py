@@ -37,16 +37,20 @@ def test_the_deepest_place_is_a_mean_over_half_a_millimetre(size):
     assert region.max_depth - expected < 0.02 * expected + 2.0 * region.max_depth_std
 
 
-@pytest.mark.parametrize(("certainty", "of_all", "number"), [(4.9, 9.0, 0), (5.1, 9.0, 1), (9.0, 2.9, 0), (9.0, 3.1, 1)], ids=str)
-def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monkeypatch, certainty, of_all, number):
-    """The same patch, with what its cells come to by chance, and all of its ±, set to just more and just less."""
+@pytest.mark.parametrize(
+    ("certainty", "of_all", "deep", "number"),
+    [(4.9, 9.0, True, 0), (5.1, 9.0, False, 1), (9.0, 2.9, False, 0), (9.0, 3.1, False, 1), (9.0, 2.9, True, 1)],
+    ids=str,
+)
+def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monkeypatch, certainty, of_all, deep, number):
+    """The same patch, with what its cells come to by chance, and all of its ±, set to just more and just less; and with or without a deepest place."""
     cells = every_cell(GEAR, 0.5)
     flank = flanks_of(cells)
     flank[4, 0, 8:20, 4:16] = -0.1
     patch = with_flanks(cells, flank)
     volume = find_wear(patch, NOISE).volume
     assert volume == pytest.approx(0.1 * 144 * find_wear(patch, NOISE).side_maps.area[-1], rel=1e-3)
-    filled = np.zeros_like(find_wear(patch, NOISE).depth)
+    filled = -float(deep) * find_wear(patch, NOISE).depth
     given = Volumes(
         np.array([volume]),
         np.array([certainty]),

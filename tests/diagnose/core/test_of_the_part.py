@@ -58,14 +58,19 @@ def test_a_coat_on_roots_and_tips_is_told_whatever_the_flanks_are_like():
     assert [effect.name for effect in loop.effects if effect.kind is Kind.MEASUREMENT] == ["coating"]
 
 
-@pytest.mark.parametrize(("flank_class", "sides"), [(8, NO_SIDE), (3, LEFT)])
-def test_a_hollow_form_of_one_side_within_the_class_is_as_likely_cut(unworn, flank_class, sides):
+@pytest.mark.parametrize(
+    ("flank_class", "varies", "sides"),
+    [(8, 0.0, NO_SIDE), (3, 0.0, LEFT), (8, 0.4, LEFT)],
+    ids=["cut", "rougher than its class", "worn"],
+)
+def test_a_hollow_form_of_one_side_within_the_class_that_teeth_have_alike_is_as_likely_cut(unworn, flank_class, varies, sides):
     """Nothing at the pitch point, 20 µm beside it, and not the shape of sliding: f_fαT is 24 µm in class 8 and 4.2 in class 3."""
     first, last = unworn.grid.roll_edges[[0, -1]]
     pitch_point = make_context(unworn, np.eye(3), False).pitch_roll
     hollow = -0.02 * np.sin(2.0 * np.pi * (np.nan_to_num(unworn.points.roll) - pitch_point) / (last - first)) ** 2
     gear = Gear.from_spec(replace(PINION.spec, tolerance=GearTolerance(flank_class=flank_class)))
-    cells = with_form(replace(unworn, grid=replace(unworn.grid, gear=gear)), hollow, LEFT)
-    assert (np.ptp(hollow) < profile_form_tolerance(gear.normal_module, flank_class)) == (sides == NO_SIDE)
+    share = 1.0 + varies * np.sin(unworn.points.tooth.astype(float) ** 2)
+    cells = with_form(replace(unworn, grid=replace(unworn.grid, gear=gear)), share * hollow, LEFT)
+    assert (np.ptp(hollow) < profile_form_tolerance(gear.normal_module, flank_class)) == (flank_class == 8)
     loop = explained(cells)
     assert {loop.worn_sides, *loop.undecided} >= {LEFT} and loop.worn_sides == sides
