@@ -253,6 +253,13 @@ class Rules:
         off=1.0,
     )
 
+    alike_teeth: float = rule(
+        0.1,
+        "1",
+        "tuned: 17 real ground gears (0.02 to 0.09), family k of benchmarks/families (0.13 to 0.28)",
+        "standard deviation of the teeth's shares of a loss, in their mean, below which all teeth may have been cut so",
+        off=0.0,
+    )
     proud: float = rule(
         0.5,
         "1",

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
+from scipy.special import chdtri
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
@@ -114,11 +115,11 @@ def _believed(cells: Cells, context: Context, noise: float) -> Bools:
 
 @dataclass(frozen=True, slots=True)
 class _Loss:
-    """What flanks may have lost, (m,) mm, the mean of all teeth; the cost with it, and where all teeth have lost the same."""
+    """What flanks may have lost, (m,) mm, the mean of all teeth; the cost with it; and whether teeth have lost more and less of it."""
 
     cost: float
-    of_all: float
     loss: Floats
+    uneven: bool
 
 
 @dataclass(frozen=True)
@@ -248,7 +249,7 @@ class _Scan:
             allowed = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
             for law, on in any_wear_columns(cells, context, worn):
                 for lost in self.losses(model, worn, law, on):
-                    as_cut = lost.cost > lost.of_all - rules().errors_by_tooth ** 2 and self._form(lost.loss, side) <= allowed
+                    as_cut = not lost.uneven and self._form(lost.loss, side) <= allowed
                     costs.append(max(lost.cost, unworn) if as_cut else lost.cost)
         return min(costs, default=None)
 
@@ -307,11 +308,14 @@ class _Scan:
         share = alone.amplitudes[last]
         if float((share <= 0.0).mean()) > rules().blank_flanks:
             return []
-        if share.min() < 0.0:
-            return [_Loss(common, common, loss)]
-        shares = rules().parameter_penalty * (by_tooth.count - len(worn))
-        own = alone.square / self.problem.unit + price + shares + self._named(searched)
-        return [_Loss(common, common, loss), _Loss(own, common, loss)]
+        more, gain = by_tooth.count - len(worn), (fitted.square - alone.square) / self.problem.unit
+        by_chance = float(chdtri(more, rules().significance))
+        uneven = gain > by_chance and float(share.std()) > rules().alike_teeth * float(share.mean())
+        losses = [_Loss(common, loss, uneven)]
+        if share.min() >= 0.0:
+            paid = price + rules().parameter_penalty * more + self._named(searched)
+            losses.append(_Loss(alone.square / self.problem.unit + paid, loss, uneven))
+        return losses
 
     def _known(self, model: Model) -> Model:
         """A model with what is in every one, to begin with."""
