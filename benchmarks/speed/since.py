@@ -10,6 +10,7 @@ coated scan of the speed measurements is read and everything written that each w
 from __future__ import annotations
 
 import argparse
+import compileall
 import os
 import re
 import statistics
@@ -41,6 +42,8 @@ def version_at(folder: Path) -> dict[str, str]:
     file = subprocess.run(asked, env=os.environ | environment, capture_output=True, text=True, check=True).stdout.strip()
     if not Path(file).is_relative_to(folder):
         raise SystemExit(f"{file} would be measured, not the version in {folder}")
+    # As pip does with what it installs: where no bytecode is to be written, every start would compile anew, the longer the larger the version.
+    compileall.compile_dir(folder / "gearwear", quiet=1)
     return environment
 
 
