@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.stated import kept
@@ -131,6 +130,8 @@ def _near(points: Floats, artefacts: Sequence[Artefact]) -> Bools:
 
 def _fit(points: Floats, start: Floats) -> tuple[Floats, Bools, Floats]:
     """Parameters (centre, radius, and of a cylinder its axis), the points in use and all residuals, mm."""
+    from scipy.optimize import least_squares  # few scans hold an artefact
+
     use, solution = np.ones(len(points), dtype=bool), start
     rest = _residuals(points, start)
     for _ in range(PASSES):

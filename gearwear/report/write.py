@@ -84,6 +84,7 @@ def write_results(
         for name, write in EXTRAS.items():
             if name in also:
                 files += write(results, stage)
+        writers.append(partial(_write_report, stage / "report.json", results, files, command))
         if not page:
             each(writers)
         if page or pdf:
@@ -96,8 +97,11 @@ def write_results(
                 from gearwear.report.pdf import write_pdf
 
                 write_pdf(stage / "report.pdf", view)
-        write_json(stage / "report.json", document(results, files, command))
     return files
+
+
+def _write_report(path: Path, results: Results, files: list[str], command: str) -> None:
+    write_json(path, document(results, files, command))
 
 
 def report_arrays(results: Results) -> ReportArrays:

@@ -26,6 +26,7 @@ from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.design.twist import Segment, from_end, section_angle, twisted, wrapped_angle
 from gearwear.placing.cells import CellGrid
 from gearwear.placing.side_maps import rim
+from gearwear.wear.inside_tooth import above_circle, depth_inside, half_angle_at, in_section, perhaps_inside
 
 INSIDE = 0.03
 """Depth, in modules, below every nominal surface from which a point may lie on a fracture."""
@@ -137,34 +138,12 @@ def broken_sentences(broken: Sequence[Broken]) -> tuple[str, ...]:
     return tuple(said)
 
 
-def depth_inside(points: Floats, gear: Gear) -> tuple[Ints, Floats, Floats]:
-    """Tooth (0-based), depth below the nearest nominal surface of the tooth (mm, negative outside), and place across its thickness (−1 … 1).
-
-    Below the form circle the flank goes on towards the fillet as the fillet's own half angle says; the root land is no surface of a tooth.
-    """
-    radius, angle = np.hypot(points[:, 0], points[:, 1]), section_angle(gear, *points.T)
-    index = np.rint(angle / gear.pitch_angle)
-    within = angle - index * gear.pitch_angle
-    half = np.maximum(_half_angle(gear, radius, gear.root_radius), 1e-9)
-    # Normal to an involute is r_b of arc, in space cos β_b of it; the fillet is taken alike.
-    flank = gear.base_radius * gear.base_helix_cosine * (half - np.abs(within))
-    below_tip = gear.orientation * (gear.tip_radius - radius)
-    depth = np.minimum.reduce([flank, below_tip, points[:, 2], gear.face_width - points[:, 2]])
-    if gear.spec.gap > 0.0:
-        depth = np.minimum(depth, from_end(gear, points[:, 2]))
-    depth = np.where(_above(gear, radius, gear.root_radius) > 0.0, depth, -1.0)
-    return index.astype(np.int64) % gear.teeth, depth, within / half
-
-
-def _above(gear: Gear, radius: Floats, circle: float) -> Floats:
-    """How far radii lie above a circle, towards the tip, mm."""
-    return gear.orientation * (radius - circle)
-
-
-def _half_angle(gear: Gear, radius: Floats, root: float) -> Floats:
-    """Half angles of a tooth at radii, rad; beyond its ends those at the root given and at the end of the flank."""
-    low, high = sorted((root, gear.flank_end_radius))
-    return gear.half_angle(np.clip(radius, low, high))
+def _depth_of_tooth(points: Floats, gear: Gear) -> tuple[Floats, Floats]:
+    """Depth and place across of `depth_inside`; −1 mm below the flanks where the metal there is a guess."""
+    _, depth, across = depth_inside(points, gear)
+    if not gear.root_stated:
+        depth = np.where(above_circle(gear, np.hypot(points[:, 0], points[:, 1]), gear.form_radius) > 0.0, depth, -1.0)
+    return depth, across
 
 
 def _foot(gear: Gear) -> float:
@@ -196,35 +175,35 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
     if planar:
         return []
     m = gear.transverse_module
-    tooth, depth, across = depth_inside(points, gear)
-    if not gear.root_stated:  # below the flanks the metal is a guess
-        depth = np.where(_above(gear, np.hypot(points[:, 0], points[:, 1]), gear.form_radius) > 0.0, depth, -1.0)
-    deep = np.flatnonzero(depth > INSIDE * m)
+    tooth, perhaps = perhaps_inside(points, gear, INSIDE * m)
+    depth, across = _depth_of_tooth(points[perhaps], gear)
+    inside = depth > INSIDE * m
+    deep, depth, across = perhaps[inside], depth[inside], across[inside]
     result: list[tuple[int, Ints]] = []
     for k in np.unique(tooth[deep]):
-        tooth_points = deep[tooth[deep] == k]
-        if len(tooth_points) < FEWEST:
+        on_tooth = np.flatnonzero(tooth[deep] == k)
+        if len(on_tooth) < FEWEST:
             continue
-        for part in _together(points[tooth_points], gear):
-            index = tooth_points[part]
-            if len(index) < FEWEST or not _is_fracture(points[index], depth[index], across[index], gear):
+        for part in _together(points[deep[on_tooth]], gear):
+            which = on_tooth[part]
+            index = deep[which]
+            if len(index) < FEWEST or not _is_fracture(points[index], depth[which], across[which], gear):
                 continue
             if not _is_surface(points[index], points[tooth == k]):  # asked of few: it looks at the whole tooth
                 continue
-            if float(np.quantile(depth[index], DEEP)) > OTHERS * _usual_depth(index, points, tooth, depth):
+            if float(np.quantile(depth[which], DEEP)) > OTHERS * _usual_depth(index, points, tooth, gear):
                 result.append((int(k), index))
     # What every tooth shows is another gear than the design, and no accident.
     return result if len({k for k, _ in result}) <= MOST_TEETH * gear.teeth else []
 
 
-def _usual_depth(index: Ints, points: Floats, tooth: Ints, depth: Floats) -> float:
+def _usual_depth(index: Ints, points: Floats, tooth: Ints, gear: Gear) -> float:
     """How deep typical teeth lie where these points of one do, mm: their edges may be rounded off as well; 0 where few were seen there."""
     place = np.column_stack([points[:, 2], np.hypot(points[:, 0], points[:, 1])])
     low, high = place[index].min(axis=0), place[index].max(axis=0)
     there = np.flatnonzero(np.all((place >= low) & (place <= high), axis=1) & (tooth != tooth[index[0]]))
-    others = [
-        float(np.quantile(depth[same], DEEP)) for k in np.unique(tooth[there]) if len(same := there[tooth[there] == k]) >= FEWEST
-    ]
+    depth, its = _depth_of_tooth(points[there], gear)[0], tooth[there]
+    others = [float(np.quantile(depth[its == k], DEEP)) for k in np.unique(its) if (its == k).sum() >= FEWEST]
     return max(float(np.median(others)), 0.0) if len(others) > 2 else 0.0
 
 
@@ -243,7 +222,7 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
     """Whether points go through the middle of a tooth, or round a hollow too deep for its width."""
     m = gear.transverse_module
     # A root land that lies a little high is deep under the fillet that runs out into it.
-    up = _above(gear, np.hypot(points[:, 0], points[:, 1]), gear.root_radius) > CLEAR_OF_FACES * m
+    up = above_circle(gear, np.hypot(points[:, 0], points[:, 1]), gear.root_radius) > CLEAR_OF_FACES * m
     if up.sum() < FEWEST:
         return False
     points, depth, across = points[up], depth[up], across[up]
@@ -256,7 +235,7 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
         return True
     extent = min(float(np.ptp(points[:, 2])), float(np.ptp(radius)))
     sized = float(np.quantile(depth, DEEP))
-    below_tip, from_face = -_above(gear, radius, gear.tip_radius), from_end(gear, points[:, 2])
+    below_tip, from_face = -above_circle(gear, radius, gear.tip_radius), from_end(gear, points[:, 2])
     on_edge = min(float(below_tip.min()), float(from_face.min())) < (2.0 * INSIDE + CLEAR_OF_FACES) * m
     return bool(on_edge and sized > CLEAR_OF_FACES * 0.5 * m and sized > STEEP * extent)
 
@@ -326,8 +305,8 @@ def on_stumps(points: Floats, broken: tuple[Broken, ...], grid: CellGrid) -> Boo
     if not missing:
         return result
     gear = grid.gear
-    tooth, _, _ = depth_inside(points, gear)
-    above = _above(gear, np.hypot(points[:, 0], points[:, 1]), gear.root_radius) > -CLEAR_OF_FACES * gear.transverse_module
+    _, tooth, _ = in_section(points, gear)
+    above = above_circle(gear, np.hypot(points[:, 0], points[:, 1]), gear.root_radius) > -CLEAR_OF_FACES * gear.transverse_module
     row: Ints = np.clip(np.searchsorted(grid.z_edges, points[:, 2]) - 1, 0, grid.rows - 1)
     for one in missing:  # of a double helical gear on one half
         rows: Bools = np.asarray(one.flank_gone.all(axis=(0, 2)))
@@ -352,7 +331,7 @@ def on_whole_teeth(points: Floats, gear: Gear, planar: bool = False) -> Bools:
     fractures = find_fractures(points, gear, planar)
     if not fractures:
         return np.ones(len(points), dtype=bool)
-    return np.asarray(~np.isin(depth_inside(points, gear)[0], [k for k, _ in fractures]))
+    return np.asarray(~np.isin(in_section(points, gear)[1], [k for k, _ in fractures]))
 
 
 class Fracture:
@@ -411,7 +390,7 @@ def measure_broken(
     """
     gear = grid.gear
     result = []
-    tooth, _, _ = depth_inside(points, gear)
+    tooth = in_section(points, gear)[1] if fractures else np.zeros(0, dtype=np.int64)
     flanks = (2, grid.rows, grid.flank)
     for k, (rows, stretch) in product(sorted({number for number, _ in fractures}), grid.zones):
         surface = points[np.concatenate([index for number, index in fractures if number == k])]
@@ -421,7 +400,7 @@ def measure_broken(
         places = _places(gear, k, stretch)
         fracture = Fracture(surface, points[(tooth == k) & ~border & _on(gear, stretch, points)], gear, k, stretch)
         gone = fracture.gone(places)
-        if gone[_above(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0].mean() > MISSING:
+        if gone[above_circle(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0].mean() > MISSING:
             fracture.intact = None  # nothing is left beside it
             gone = fracture.gone(places)
         close, box = _places_about(gear, k, stretch, places[gone])
@@ -465,12 +444,12 @@ def _places(gear: Gear, tooth: int, stretch: Segment) -> Floats:
     above_root = _foot(gear)
     low, high = sorted((gear.root_radius, gear.tip_radius))
     square = np.linspace(low**2, high**2, RINGS + 1)
-    half = _half_angle(gear, np.sqrt(square), above_root)
+    half = half_angle_at(gear, np.sqrt(square), above_root)
     area = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(square) * (half[1:] + half[:-1]))])  # both halves: ∫ 2 ψ r dr
     # Multiples of three irrational numbers fill a cube evenly (Roberts 2018).
     up, across, along = (np.arange(PLACES // 2)[:, None] * SHARES % 1.0).T
     radius = np.sqrt(np.interp(up * area[-1], area, square))
-    angle, z = across * _half_angle(gear, radius, above_root), along * (stretch.high - stretch.low)
+    angle, z = across * half_angle_at(gear, radius, above_root), along * (stretch.high - stretch.low)
     radius, angle = np.tile(radius, 2), np.concatenate([angle, -angle]) + tooth * gear.pitch_angle
     z = np.concatenate([stretch.low + z, stretch.high - z])
     return twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]))
@@ -492,7 +471,7 @@ def _places_about(gear: Gear, tooth: int, stretch: Segment, some: Floats) -> tup
     share = np.concatenate([share, np.abs(share - [0.0, 1.0, 1.0])])  # end for end the same
     square, within, z = (low + share * (high - low)).T
     radius = np.sqrt(square)
-    inside = np.abs(within) < _half_angle(gear, radius, foot)
+    inside = np.abs(within) < half_angle_at(gear, radius, foot)
     x, y = radius * np.cos(within + middle), radius * np.sin(within + middle)
     return twisted(gear, np.column_stack([x, y, z])[inside]), 0.5 * float(np.prod(high - low)) * float(inside.mean())
 
@@ -528,7 +507,7 @@ def _named(
     flank: Bools,
 ) -> Broken:
     m = gear.transverse_module
-    above = _above(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0
+    above = above_circle(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0
     if gone[above].mean() > MISSING:
         return Broken(tooth, MISSING_TOOTH, None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
     to_ends = (float(surface[:, 2].min()) - stretch.low, stretch.high - float(surface[:, 2].max()))

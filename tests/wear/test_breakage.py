@@ -8,7 +8,8 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.surface import locate
 from gearwear.placing.cells import CellGrid
-from gearwear.wear.breakage import broken_sentences, depth_inside, find_fractures, measure_broken, with_borders, without_broken
+from gearwear.wear.breakage import broken_sentences, find_fractures, measure_broken, with_borders, without_broken
+from gearwear.wear.inside_tooth import depth_inside
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Patch, Recipe, make_scan
 

@@ -7,7 +7,8 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.registration import stray_limit
-from gearwear.wear.breakage import depth_inside, find_fractures
+from gearwear.wear.breakage import find_fractures
+from gearwear.wear.inside_tooth import depth_inside
 from gearwear.wear.regions import find_wear
 from gearwear.wear.thickness import section_thickness
 from gearwear.wear.volume import _deepest_pit

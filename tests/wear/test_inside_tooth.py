@@ -1,0 +1,33 @@
+"""Points inside teeth: none that is deep is left out by the bound."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gearwear.design import Gear, GearSpec
+from gearwear.wear.inside_tooth import depth_inside, perhaps_inside
+
+GEARS = {
+    "spur": GearSpec("", 25, 3.0, 20.0),
+    "undercut": GearSpec("", 9, 4.0, 12.0),
+    "helical": GearSpec("", 20, 2.0, 15.0, helix_angle=0.35),
+    "ring": GearSpec("", 60, 2.0, 10.0, internal=True),
+}
+
+
+@pytest.mark.parametrize("kind", GEARS)
+def test_all_that_are_deep_are_asked(kind):
+    gear, random = Gear.from_spec(GEARS[kind]), np.random.default_rng(1)
+    low, high = sorted((gear.root_radius, gear.tip_radius))
+    radius, angle = random.uniform(0.98 * low, 1.02 * high, 200_000), random.uniform(-np.pi, np.pi, 200_000)
+    z = random.uniform(-0.1, 1.1, 200_000) * gear.face_width
+    points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z])
+    least = 0.03 * gear.transverse_module
+    tooth, depth, _ = depth_inside(points, gear)
+    same, asked = perhaps_inside(points, gear, least)
+    np.testing.assert_array_equal(same, tooth)
+    deep = depth > least
+    assert deep.sum() > 10_000
+    assert np.isin(np.flatnonzero(deep), asked).all()
+    assert len(asked) < 1.2 * deep.sum()  # or it would save nothing
