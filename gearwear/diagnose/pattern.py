@@ -120,7 +120,8 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
     shown = [order for order in range(len(p_values)) if p_values[order] < rules().significance and order not in done]
     for order in sorted(shown, key=lambda one: p_values[one]):
         # What goes round in other orders would drown this one in teeth left out.
-        rest = sides - sum((_order_map(sides, other, rules().smoothings[1]) for other in shown if other != order), np.zeros(1))
+        middle = rules().smoothings[len(rules().smoothings) // 2]
+        rest = sides - sum((_order_map(sides, other, middle) for other in shown if other != order), np.zeros(1))
         gains = [(*_gain_on_left_out_teeth(rest, order, width), width) for width in rules().smoothings]
         sure = [(gain, width) for gain, errors, width in gains if errors > rules().errors]
         if not sure:
