@@ -75,7 +75,7 @@ def _or_a_view(effect: FoundEffect) -> FoundEffect:
     own = known.kind in MEASURED or known.group == LEVEL_GROUP or known.tooth_specific
     if not own or effect.name == VIEW_REGISTRATION:
         return effect
-    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, VIEW_REGISTRATION})))
+    return effect.or_one_of({VIEW_REGISTRATION})
 
 
 def smoothing_of(located: SurfacePoints, noise: float, views: int) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,8 @@ from gearwear.errors import InputError
 GRADES = {9: 40.0, 11: 100.0, 12: 160.0, 13: 250.0}
 """Standard tolerance in units of i, by grade (ISO 286-1: IT9, IT11, IT12, IT13)."""
 FLANK_CLASSES = range(1, 13)
+CLASS_STEP = math.sqrt(2.0)
+"""Ratio of the tolerances of neighbouring flank tolerance classes."""
 USUAL_FLANK_CLASS = 8
 
 
@@ -90,4 +93,9 @@ def profile_form_tolerance(module: float, flank_class: int | None) -> float:
     20.4
     """
     steps = (USUAL_FLANK_CLASS if flank_class is None else flank_class) - 5
-    return float(1e-3 * (0.55 * module + 5.0) * 2.0 ** (0.5 * steps))
+    return float(1e-3 * profile_form_of_class_five(module) * CLASS_STEP**steps)
+
+
+def profile_form_of_class_five(module: float) -> float:
+    """f_fαT of class 5 at a normal module (mm), µm."""
+    return 0.55 * module + 5.0

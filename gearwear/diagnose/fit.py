@@ -230,12 +230,13 @@ class Fit:
             np.concatenate([np.arange(part.start, part.stop), np.arange(low, high)])
             for part, (low, high) in zip(parts, pairwise(ends.tolist()), strict=True)
         ]
+        residual = self.residual(model)
         for candidate, part, at in zip(model, parts, places, strict=True):
             if candidate.effect.tooth_specific or candidate.effect.kind is Kind.FORM:
                 continue
             order = order_of(self.cells.grid, own[:, part] @ amplitudes[part])
             if order > 0:
-                waves = neighbouring_waves(self.cells.grid, self.residual(model), self.use, order)
+                waves = neighbouring_waves(self.cells.grid, residual, self.use, order)
                 pulls = inverse[at] @ (columns.T @ (self.weight[:, None] * waves))
                 spread[np.ix_(at, at)] += beyond_texture(pulls, spread[np.ix_(at, at)])
         return spread, places

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -66,6 +66,10 @@ class FoundEffect(Card):
     @property
     def kind(self) -> Kind:
         return self.candidate.effect.kind
+
+    def or_one_of(self, names: Collection[str]) -> FoundEffect:
+        """The effect, with more names that it cannot be told from."""
+        return replace(self, alternatives=tuple(sorted({*self.alternatives, *names})))
 
     def lowers_by(self, flanks: SurfacePoints, context: Context) -> float:
         """By how much it lowers every one of some points on flanks, mm; 0 where it is not even there."""

@@ -6,7 +6,6 @@ is decided first, on all cells (`worn_sides`); then the scan is explained withou
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -147,7 +146,7 @@ def _or_smoothing(effect: FoundEffect) -> FoundEffect:
     form = known.group == FORM_GROUP or (known.kind is Kind.MANUFACTURE and known.group != LEVEL_GROUP)
     if not form or known.tooth_specific:
         return effect
-    return _or(effect, {EDGE_ROUNDING})
+    return effect.or_one_of({EDGE_ROUNDING})
 
 
 def _refuted(loop: Loop, cells: Cells, flanks: SurfacePoints) -> bool:
@@ -176,7 +175,7 @@ def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks:
                 worn.add(SLIDING_WEAR)
     if effect.kind is Kind.MANUFACTURE and effect.lowers_by(flanks, taken.context) > 0.0:
         worn.add(ABRASIVE_WEAR)
-    return _or(effect, worn)
+    return effect.or_one_of(worn)
 
 
 def _still_in(searched: Searched, flanks: Bools) -> bool:
@@ -230,14 +229,9 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
         fit = _with_fillets(fit, sound_cells(fit.cells, searched.worn))
         problem = fit.problem(problem.unit, context, always)
     loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
-    loop = replace(loop, effects=tuple(_or(effect, instead.get(effect.name, frozenset())) for effect in loop.effects))
+    loop = replace(loop, effects=tuple(effect.or_one_of(instead.get(effect.name, ())) for effect in loop.effects))
     # What all teeth share is known from the others, and no texture under the wear of one of them.
     return replace(loop, covariance=estimate_covariance(fit.cells, loop.left, loop.use, noise)) if loop.patterns else loop
-
-
-def _or(effect: FoundEffect, names: Collection[str]) -> FoundEffect:
-    """The effect, with more names that it cannot be told from."""
-    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, *names}))) if names else effect
 
 
 def _with_fillets(fit: Fit, sound: Bools) -> Fit:

@@ -13,7 +13,6 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.edge_rounding import EDGE_ROUNDING
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.flank_columns import any_profile, on_each_side
-from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.judge import alike, replacements
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange
@@ -47,8 +46,7 @@ def of_the_form(fit: Fit, problem: Problem, model: Model) -> tuple[Model, Mappin
     """
     cells = fit.cells
     wide = fit.dictionary.with_columns(on_each_side(cells, any_profile(cells)))
-    weight = np.where(fit.use, fit.covariance.weight, 0.0)
-    gram = Gram.of(wide.blocks, fit.target, weight, np.zeros(len(weight), np.int64), 1)
+    gram = replace(fit, dictionary=wide).problem(problem.unit, problem.context).gram
     profiles = np.arange(fit.dictionary.count, wide.count)
 
     def told(candidates: Sequence[Candidate], rest: Model) -> Bools:

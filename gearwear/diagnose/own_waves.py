@@ -25,12 +25,8 @@ LEAST_ORDER = 2
 
 def order_of(grid: CellGrid, field: Floats) -> int:
     """Order round the gear that most of an effect's field (m,) is of; 0 where it is none from 1 on."""
-    seen = np.where(grid.on_cells(np.ones_like(grid.sides(field), dtype=np.bool_)), field, np.nan)
-    shares = (
-        {order: order_share(grid, seen, order) for order in range(1, HIGHEST_ORDER + 1)} if np.nanmax(np.abs(seen)) > 0.0 else {}
-    )
-    order = max(shares, key=lambda one: shares[one], default=0)
-    return order if shares.get(order, 0.0) > rules().own_order else 0
+    share, order = max((order_share(grid, field, order), order) for order in range(1, HIGHEST_ORDER + 1))
+    return order if share > rules().own_order else 0
 
 
 def neighbouring_waves(grid: CellGrid, residual: Floats, use: Bools, order: int) -> Floats:

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from gearwear.design.tolerance import CLASS_STEP
 from gearwear.errors import InputError
-from gearwear.inspection.tolerances import RANGES_1995, STEP, Size, geometric_mean, round_micrometres
+from gearwear.inspection.tolerances import RANGES_1995, Size, geometric_mean, round_micrometres
 
 STANDARD = "ISO 1328-2:1997"
 GRADES = range(4, 13)
@@ -67,5 +68,5 @@ def radial_tolerance(quantity: str, size: Size, iso_grade: int, rounded: bool = 
     check_radial(size)
     d, m = geometric_mean(size.reference_diameter, DIAMETERS), geometric_mean(size.normal_module, MODULES)
     five = {TOTAL: 3.2 * m + 1.01 * math.sqrt(d) + 6.4, TOOTH_TO_TOOTH: 2.96 * m + 0.01 * math.sqrt(d) + 0.8}[quantity]
-    value = STEP ** (iso_grade - 5) * five
+    value = CLASS_STEP ** (iso_grade - 5) * five
     return 1e-3 * (round_micrometres(value) if rounded else value)

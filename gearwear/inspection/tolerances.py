@@ -13,6 +13,7 @@ from enum import StrEnum
 from functools import lru_cache
 
 from gearwear.design.gear import Gear
+from gearwear.design.tolerance import CLASS_STEP, profile_form_of_class_five
 from gearwear.errors import InputError
 
 FOOTNOTE = (
@@ -35,8 +36,6 @@ class Edition(StrEnum):
 CLASSES = {Edition.ISO_2013: range(1, 12), Edition.ISO_1995: range(13)}
 """Tolerance classes (1995: accuracy grades) of each edition; larger is coarser."""
 
-STEP = math.sqrt(2.0)
-"""Ratio of the tolerances of neighbouring classes."""
 
 # Outer limits (d, m_n, b; mm) and, for 1995, the ranges whose geometric means stand for the actual value.
 LIMITS = {
@@ -202,7 +201,7 @@ def tolerances(
         span = CLASSES[edition]
         raise InputError(f"{edition}: class {iso_class} does not exist, it has {span[0]} to {span[-1]}")
     formula = _class_five_2013 if edition is Edition.ISO_2013 else _class_five_1995
-    factor = STEP ** (iso_class - 5)
+    factor = CLASS_STEP ** (iso_class - 5)
     five = formula(size, sector or sector_teeth(size.teeth, edition))
     values = {f.name: factor * getattr(five, f.name) for f in fields(Tolerances)}
     return Tolerances(**{name: 1e-3 * (round_micrometres(um) if rounded else um) for name, um in values.items()})
@@ -257,7 +256,7 @@ def _class_five_2013(size: Size, k: int) -> Tolerances:
     d, m, b = size.reference_diameter, size.normal_module, size.face_width
     single = 0.001 * d + 0.4 * m + 5.0
     cumulative = 0.002 * d + 0.55 * math.sqrt(d) + 0.7 * m + 12.0
-    profile_slope, profile_form = 0.4 * m + 0.001 * d + 4.0, 0.55 * m + 5.0
+    profile_slope, profile_form = 0.4 * m + 0.001 * d + 4.0, profile_form_of_class_five(m)
     helix_slope = 0.05 * math.sqrt(d) + 0.35 * math.sqrt(b) + 4.0
     helix_form = 0.07 * math.sqrt(d) + 0.45 * math.sqrt(b) + 4.0
     return Tolerances(

@@ -372,7 +372,5 @@ def _tolerance(part: str, table: object) -> GearTolerance:
         raise InputError(f"[{part}] tolerance = {shown(table)}: must be a table, written [{part}.tolerance]")
     check_keys(f"[{part}.tolerance]", table, TOLERANCE_KEYS)
     told = {key: finite_number(f"{part}.tolerance", table, key) for key in table}
-    flank_class = told.pop("flank_class", None)
-    if flank_class is not None and not flank_class.is_integer():
-        raise InputError(f"[{part}.tolerance] flank_class = {flank_class:g}: must be a whole number from 1 to 12 (ISO 1328-1)")
-    return GearTolerance(**told, flank_class=None if flank_class is None else int(flank_class))
+    told.pop("flank_class", None)
+    return GearTolerance(**told, flank_class=table.get("flank_class"))
