@@ -481,9 +481,16 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
         Sides that are known to be worn throughout; None: the scan decides.
     """
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
-    noise, grid = measured.noise, first.grid
+    noise, grid, root_free = measured.noise, first.grid, not measured.root.fits_design
 
-    def closed_on(coarse: CellGrid, cells: Cells, located: SurfacePoints, rest: SurfacePoints | None, look: Look | None) -> Look:
+    def closed_on(
+        coarse: CellGrid,
+        cells: Cells,
+        located: SurfacePoints,
+        rest: SurfacePoints | None,
+        look: Look | None,
+        begun: Loop | None = None,
+    ) -> Look:
         """The loop closed on the cells of a coarser grid, and these."""
         if measured.streamed is not None:
             pooled = cells.pooled(coarse)
@@ -493,14 +500,20 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
                 pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
         edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(pooled.fillet_edges.tolist()))
         out = None if look is None else left_out(*look, pooled)
-        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design, worn=worn, out=out), pooled
+        return close_loop(pooled, noise, edges, root_free=root_free, worn=worn, out=out, begun=begun), pooled
 
-    def explained(cells: Cells, located: SurfacePoints, rest: SurfacePoints | None = None, look: Look | None = None) -> Loop:
+    def explained(
+        cells: Cells,
+        located: SurfacePoints,
+        rest: SurfacePoints | None = None,
+        look: Look | None = None,
+        begun: Loop | None = None,
+    ) -> Loop:
         """The loop closed on as many cells as it needs."""
         coarse = loop_grid(grid)
         if coarse is grid:
-            return close_loop(cells, noise, context, root_free=not measured.root.fits_design, worn=worn)
-        return carried(*closed_on(coarse, cells, located, rest, look), cells, noise)
+            return close_loop(cells, noise, context, root_free=root_free, worn=worn, begun=begun)
+        return carried(*closed_on(coarse, cells, located, rest, look, begun), cells, noise)
 
     rough = rough_grid(grid)
     far, look, again = False, None, None
@@ -520,7 +533,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
             measured = replace(measured, streamed=(streamed := relocated_pass(measured.streamed, again)))
             first = streamed.first.cells
         placed = replace(placed, located=located)
-        likeliest = explained(first, located, rest)
+        likeliest = explained(first, located, rest, begun=likeliest)
 
     def closed(loop: Loop, decided: bool) -> MeasuredGear:
         """With a loop; of the points of a streamed scan in all cells only where it is the one decided for, else these are moved along."""

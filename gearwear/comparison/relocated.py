@@ -93,13 +93,11 @@ class Relocation:
         limits = np.array([getattr(Bands.wide(self.grid.gear), name) for name in BAND_OF_SURFACE])[rest.surface]
         off = (left < limits[:, 0]) | (left > limits[:, 1])
         off |= ~self.limits.hold(left, self.grid.index(rest))
-        surface, deviation, remain = located.surface.copy(), located.deviation.copy(), located.deviation.copy()
+        deviation, remain = located.deviation.copy(), located.deviation.copy()
         deviation[known] += undone_deviation(located.take(known), self.loop)
         remain[known] = left
-        for values in (deviation, remain):
-            values[known[off]] = np.nan
-        surface[known[off]] = OTHER
-        return replace(located, surface=surface, deviation=deviation), replace(located, surface=surface, deviation=remain)
+        back, rest = (located.with_deviation(values).off_surface(known[off]) for values in (deviation, remain))
+        return back, rest
 
     def _left(self, located: SurfacePoints) -> tuple[SurfacePoints, Ints, SurfacePoints]:
         """Points located with the distortion undone, which of them lie on a surface, and these with what the model leaves."""

@@ -105,6 +105,14 @@ class SurfacePoints:
         """The same feet with other deviations."""
         return replace(self, deviation=deviation)
 
+    def off_surface(self, which: Ints) -> SurfacePoints:
+        """The same with some of them, by index, on no surface: as `locate` leaves these, where they lie."""
+        surface, side = self.surface.copy(), self.side.copy()
+        roll, deviation, position = self.roll.copy(), self.deviation.copy(), self.position.copy()
+        position[which] = self.take(which).measured
+        surface[which], side[which], roll[which], deviation[which] = OTHER, 0, np.nan, np.nan
+        return replace(self, surface=surface, side=side, roll=roll, position=position, deviation=deviation)
+
 
 @dataclass(frozen=True, slots=True)
 class Bands:

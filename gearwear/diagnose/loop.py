@@ -14,7 +14,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
-from gearwear.diagnose.dictionary import build_dictionary
+from gearwear.diagnose.dictionary import Candidate, build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
@@ -79,6 +79,7 @@ def close_loop(
     root_free: bool = False,
     worn: frozenset[Side] | None = None,
     out: Bools | None = None,
+    begun: Loop | None = None,
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -98,6 +99,8 @@ def close_loop(
         Sides that are known to be worn throughout; None: the scan decides.
     out : (m,) bool or None
         Cells that a look at fewer cells left out because they look worn (`left_out`): the search begins without them.
+    begun : Loop or None
+        What was found before the scan was located again: the search begins with its effects as well as with none.
 
     Returns
     -------
@@ -111,7 +114,7 @@ def close_loop(
     apart = np.zeros(len(cells.count), dtype=np.bool_)
 
     def searched_without(sides: frozenset[Side]) -> Searched:
-        return _first_search(cells, noise, replace(context, worn=sides), made, always, out, apart)
+        return _first_search(cells, noise, replace(context, worn=sides), made, always, out, apart, begun)
 
     plain = searched_without(worn or NO_SIDE)
     low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
@@ -193,6 +196,7 @@ def _first_search(
     always: frozenset[str],
     out: Bools | None,
     apart: Bools,
+    begun: Loop | None,
 ) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out, and those `apart`."""
     worn, dictionary = context.worn, build_dictionary(cells, effects, context)
@@ -202,7 +206,7 @@ def _first_search(
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
     first = fit if out is None else replace(fit, use=sound & ~out)
-    return Searched(sound, *_search(fit, first.pose_residual(), noise, context, always, out))
+    return Searched(sound, *_search(fit, first.pose_residual(), noise, context, always, out, begun))
 
 
 def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop:
@@ -243,7 +247,13 @@ def _with_fillets(fit: Fit, sound: Bools) -> Fit:
 
 
 def _search(
-    fit: Fit, residual: Floats, noise: float, context: Context, always: frozenset[str], out: Bools | None = None
+    fit: Fit,
+    residual: Floats,
+    noise: float,
+    context: Context,
+    always: frozenset[str],
+    out: Bools | None = None,
+    begun: Loop | None = None,
 ) -> tuple[Fit, Problem, Model]:
     """Forward to the floor and exchange, with mask, shapes and covariance renewed round by round."""
     sound, unit, plain = fit.use, rules().first_unit, residual
@@ -261,7 +271,10 @@ def _search(
         before = model
         problem = fit.problem(unit, context, always)
         model = problem.with_known(model)
-        model = _searched(problem, model) if round_ < 2 else exchange(problem, model)
+        if round_ < 2:
+            model = _searched(problem, model, _as_begun(problem, begun) if round_ == 0 else ())
+        else:
+            model = exchange(problem, model)
         dictionary, model = refine_shapes(problem, model, fit.cells, fit.target, use, fit.covariance)
         alike = polished is not None and _same(model, polished[0], context) and _settled(use, polished[1], sound)
         if round_ >= 1 and not alike:
@@ -298,12 +311,29 @@ def _same(model: Model, before: Model, context: Context) -> bool:
     return True
 
 
-def _searched(problem: Problem, model: Model) -> Model:
+def _searched(problem: Problem, model: Model, begun: Model = ()) -> Model:
     """Forward and exchange from a model, and from that with every surface's own offset: a scale, once it is in for two of these, is hard to get rid
-    of. The cheaper of both."""
+    of. And from what was found before. The cheapest of these."""
     wide = problem.with_offsets(model)
-    starts = [model] if len(wide) == len(model) else [model, wide]
+    starts = [model, *(start for start in (wide, begun) if len(start) > len(model))]
     return min((exchange(problem, forward(problem, start)) for start in starts), key=problem.cost)
+
+
+def _as_begun(problem: Problem, begun: Loop | None) -> Model:
+    """The effects that were found before, each at the shape next to the one it had, and what is known to be there."""
+    model = list[Candidate]()
+    for one in (*begun.form, *begun.effects) if begun is not None else ():
+        alike = [candidate for candidate in problem.dictionary.candidates if candidate.name == one.name]
+        if alike:
+            model.append(min(alike, key=lambda candidate: _apart(candidate, one.candidate, problem.context)))
+    return problem.with_known(tuple(model)) if model else ()
+
+
+def _apart(one: Candidate, two: Candidate, context: Context) -> float:
+    """How far the shapes of two candidates of an effect lie apart, in the ranges in which each is refined; what is no range is the same or not."""
+    ranges = one.effect.bracket(one.shape, context)
+    steps = [abs(a - b) / max(high - low, 1e-12) for a, b, (low, high) in zip(one.shape, two.shape, ranges, strict=False)]
+    return sum(steps) + sum(a != b for a, b in zip(one.shape[len(ranges) :], two.shape[len(ranges) :], strict=False))
 
 
 def make_context(

@@ -418,10 +418,8 @@ def below_tips(located: SurfacePoints, gear: Gear, noise: float, shift: float | 
         return located
     flank = np.flatnonzero(located.surface == FLANK)
     roll = located.own_roll(gear)[flank]
-    surface, deviation = located.surface.copy(), located.deviation.copy()
     land = flank[gear.orientation * np.hypot(roll, gear.base_radius) > highest]
-    surface[land], deviation[land] = OTHER, np.nan
-    return replace(located, surface=surface, deviation=deviation)
+    return located.off_surface(land)
 
 
 def highest_flank(gear: Gear, noise: float, shift: float) -> float:

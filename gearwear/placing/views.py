@@ -105,8 +105,7 @@ class PlacedScan:
     @property
     def measured(self) -> Floats:
         """(n, 3) the points themselves in the design frame, mm."""
-        located = self.located
-        return np.asarray(located.position + located.normal * np.nan_to_num(located.deviation)[:, None], dtype=np.float64)
+        return self.located.measured
 
 
 def place(
