@@ -1,7 +1,7 @@
 """What a scan can show of an effect, from the truth alone: the limit below which not finding it is no fault.
 
-The field of the effect is measured on the generator's own displaced points, without noise. What the pose and the
-other effects of the scan could take up is projected out. The rest is set against the true noise and texture, with
+The field of the effect is measured on the generator's own displaced points, without noise. What the pose, the levels that the
+drawing's tolerances leave open and the other effects of the scan could take up is projected out. The rest is set against the true noise and texture, with
 their true correlation: an effect counts as detectable where
 
 * a test that knew everything but its amplitude, at the family-wise level the loop uses, would find it with 95 % power, and
@@ -16,12 +16,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import optimize, stats
+from scipy.spatial import cKDTree
 
 from benchmarks.loop_study.fitting import Fitted
 from benchmarks.loop_study.scenario import Scenario
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
-from gearwear.design.surface import END_HIGH, END_LOW, locate
+from gearwear.design.surface import BORE, END_HIGH, END_LOW, ROOT, TIP, locate
 from gearwear.diagnose.rules import RULES
 from gearwear.placing.cells import Cells, bin_points
 from gearwear.placing.pose import Pose, least_turn
@@ -181,17 +182,33 @@ def effect_field(effect: Effect, scenario: Scenario, scan: SyntheticScan, fitted
 
 def in_sight(scan: SyntheticScan, fitted: Fitted) -> Bools:
     """Cells whose points really come from that kind of surface, none of them worn, (m,)."""
-    labels, cells = scan.truth.labels, fitted.first
-    cell = cells.grid.index(fitted.placed.located)
+    placed, cells = fitted.placed, fitted.first
+    cell = cells.grid.index(placed.located)
     on = cell >= 0
+    # Points were taken out on the way here: each is known by its place.
+    which = cKDTree(placed.registration.pose.apply(scan.points)).query(placed.measured[on])[1]
+    depth, surface = scan.truth.labels.depth[which], scan.truth.labels.surface[which]
     count = np.bincount(cell[on], minlength=cells.grid.count)
-    worn = np.bincount(cell[on], labels.depth[on] > 1e-4, minlength=cells.grid.count) > 0
+    worn = np.bincount(cell[on], depth > 1e-4, minlength=cells.grid.count) > 0
     # an edge's noise carries flank points past the end of the gear: no end face was seen there
-    end = np.bincount(
-        cell[on], (labels.surface == Surface.END_LOW)[on] | (labels.surface == Surface.END_HIGH)[on], cells.grid.count
-    )
+    end = np.bincount(cell[on], (surface == Surface.END_LOW) | (surface == Surface.END_HIGH), cells.grid.count)
     is_end = (cells.points.surface == END_LOW) | (cells.points.surface == END_HIGH)
     return np.asarray(cells.seen & ~worn & (cells.count >= 2) & ((end > 0.5 * count) == is_end))
+
+
+def open_levels(cells: Cells, use: Bools, field: Floats, gear: Gear) -> Floats:
+    """(m, k) columns of the surfaces on which a common level is no evidence, as the drawing's tolerance holds what all effects together, `field`
+    (m,) mm, do to it."""
+    told = gear.tolerance
+    limits = {
+        TIP: 0.5 * told.tip_diameter, ROOT: 0.5 * told.root_diameter, BORE: 0.5 * told.bore_diameter, END_HIGH: told.face_width
+    }  # fmt: skip
+    levels = [np.zeros((len(use), 0))]
+    for surface, limit in limits.items():
+        at = use & (cells.points.surface == surface)
+        if at.any() and abs(float(field[at].mean())) <= limit:
+            levels.append(at[:, None].astype(np.float64))
+    return np.hstack(levels)
 
 
 def visibilities(scenario: Scenario, scan: SyntheticScan, fitted: Fitted, gear: Gear) -> dict[str, Visibility]:
@@ -203,6 +220,7 @@ def visibilities(scenario: Scenario, scan: SyntheticScan, fitted: Fitted, gear: 
     weight = np.where(use, 1.0 / (cover.white + spread), 0.0)
     pose = np.where(use[:, None], cells.motion, 0.0)
     fields = [np.where(use, effect_field(e, scenario, scan, fitted, gear), 0.0) for e in recipe.effects]
+    pose = np.hstack([pose, open_levels(cells, use, np.sum([np.zeros(len(use)), *fields], axis=0), gear)])
     result = {}
     noise = 1e-3 * recipe.noise_um
     for i, effect in enumerate(recipe.effects):

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from gearwear.api import as_scan
 from gearwear.arrays import Floats
-from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, find_effects
+from gearwear.comparison.measured_gear import MeasuredGear, find_effects, register
 from gearwear.comparison.open_volume import OpenVolume
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
-from gearwear.design.spec import GearSpec
-from gearwear.diagnose.loop import Loop, make_context
-from gearwear.placing.cells import CellGrid, Cells, bin_points
-from gearwear.placing.registration import stray_limit
-from gearwear.placing.root import fit_root
-from gearwear.placing.views import PlacedScan, place
+from gearwear.design.spec import GearSpec, PairSpec
+from gearwear.diagnose.loop import Loop
+from gearwear.placing.cells import Cells
+from gearwear.placing.views import PlacedScan
 from gearwear.wear.regions import Wear, find_wear
 from tests.synthetic import GearNumbers
 
@@ -104,12 +103,13 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
 
 def registered(points: Floats, gear: Gear, mate: bool = False) -> MeasuredGear:
     """A scan on its drawing, binned, before the loop; arguments as those of `fit`."""
-    placed = place([points], gear, [None])
-    grid = CellGrid.for_scan(gear, len(placed.located))
-    first = bin_points(placed.located, grid, clip=stray_limit(placed.located))
-    line = (2.0, 3.0 * gear.reference_radius * math.sin(gear.transverse_pressure_angle)) if mate else None
-    context = make_context(first, placed.registration.pose.rotation, False, line)
-    return MeasuredGear(
-        design=Design({"gear": gear}), scans=(), part="gear", root=fit_root(placed.located, gear), placed=placed, context=context,
-        first=first, loop=None, final=FinalPlace(placed.located, placed.registration.pose, first),
-    )  # fmt: skip
+    return register(_drawn(gear, mate), as_scan(points), "pinion")
+
+
+def _drawn(gear: Gear, mate: bool) -> Design:
+    """The gear alone, or with a mate of twice its teeth at the centre distance of the reference circles."""
+    gears = {"pinion": gear}
+    if not mate:
+        return Design(gears)
+    gears["gear"] = Gear.from_spec(replace(gear.spec, name="gear", teeth=2 * gear.spec.teeth, bore_diameter=0.0))
+    return Design(gears, PairSpec(3.0 * gear.reference_radius))
