@@ -13,23 +13,20 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, counted, few, measured
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
-from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
+from gearwear.placing.side_maps import SideMaps, rim
 from gearwear.threads import on_one_thread
-from gearwear.wear.burr import TipBurr, without_burrs
-from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
+from gearwear.wear.burr import TipBurr
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_sides, faint_wear, flank_limits, upper_limit
-from gearwear.wear.own_level import at_own_level, standing_proud
-from gearwear.wear.volume import DEEPEST_OVER, region_volumes
+from gearwear.wear.places import LaidFlat, lay_flat, standing_out
+from gearwear.wear.volume import DEEPEST_OVER, Volumes, region_volumes
 
-RIM = 0.2
-"""Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
 LEAST_VOLUME = 5.0
 """Least volume of a region in the standard deviations of its own cells."""
 BEYOND_CHANCE = 3.0
@@ -233,102 +230,50 @@ def find_wear(
     """
     if gone is None:
         gone = np.zeros((cells.grid.gear.teeth, len(Side), cells.grid.rows, cells.grid.fillet + cells.grid.flank), dtype=bool)
-    if gone.any():
-        cells = cells.without(cells.grid.on_cells(gone))
-    cells, perhaps = at_own_level(within_ends(cells, noise, loop), noise, loop, worn)
-    with_burrs = make_side_maps(cells)
-    filled = infill(with_burrs)
-    sheets, burrs, burr_std = without_burrs(with_burrs, filled, cells, noise, worn)
-    if burrs:
-        filled = infill(sheets)
-        taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
-        cells = cells.with_deviation(cells.points.deviation + taken)
-    proud = standing_proud(sheets, loop, worn)
-    if any(proud):
-        raised = np.broadcast_to(np.reshape(proud, (1, 2, 1, 1)), sheets.count.shape)
-        cells = cells.with_deviation(cells.points.deviation - cells.grid.on_cells(raised))
-        sheets = make_side_maps(cells)
-        filled = infill(sheets)
-    local, number = window_mean(sheets)
-    mask, spread, limit = worn_cells(local, number, noise)
-    pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
-    mask |= between(pits, sheets.fillet)
-    mask &= ~gone
-    toothed = cells.grid.toothed[:, None]
-    zone = end_zone(sheets, cells)
-    edges = at_ends_only(mask, zone)
-    corners: Bools = np.zeros_like(zone)
-    for side in worn if len(worn) == 1 else ():  # of both sides nothing tells what was made from what was lost
-        corners[side.index] = shared_edges(sheets, zone, cells.grid.gear.transverse_module, noise)[side.index]
-    at_ends = mask & edges[:, :, None, None]
-    edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
-    mask &= ~edges[:, :, None, None]
-    least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
-    whole = np.zeros(least.shape, dtype=np.bool_) if loop is None or loop.worn_flanks is None else loop.worn_flanks.copy()
-    least[whole] = LEAST_VOLUME_OF_WORN_FLANK
-    whole[:, [side.index for side in worn]] = True
-    mask[whole, :, sheets.fillet :] = True
-    allowed = toothed & ~corners & ~gone
-    known = seen_places(cells.grid.sides(cells.count), sheets.fillet)
-    beyond = ((allowed & ~known & (filled < -limit)) * sheets.area)[..., sheets.fillet :]
-    allowed = allowed & known
-    mask &= allowed
-    where = np.argwhere(mask.any(axis=(2, 3)))
-    around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
-    wide = rim(mask, around) & allowed
-    volumes = region_volumes(cells, sheets, filled, mask, wide, allowed, noise, loop, worn, errors)
-    value, filled = volumes.value, volumes.filled
-    covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
-    # A place may be low by texture alone: what the same cells come to on sides without wear decides.
-    stds = np.sqrt(np.diag(covariance))
+    laid = lay_flat(cells.without(cells.grid.on_cells(gone)) if gone.any() else cells, noise, loop, worn)
+    places = standing_out(laid, noise, loop, worn, gone)
+    cells, sheets = laid.cells, laid.sheets
+    volumes = region_volumes(
+        cells, sheets, laid.filled, places.mask, places.wide, places.allowed, noise, loop, worn, errors
+    )  # fmt: skip
+    where = np.argwhere(places.mask.any(axis=(2, 3)))
     at = tuple(where.T)
+    covariance = volumes.covariance + np.diag(laid.burr_std[where[:, 1]] ** 2)
+    # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     on_worn = np.isin(where[:, 1], [side.index for side in worn])
-    sure = (volumes.certainty > least[at]) | (on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE))
-    for tooth, half in where[~sure]:
-        mask[tooth, half] = False
-    counted = mask.copy()
-    for tooth, half in where[sure & (volumes.rest > 0.5)]:
-        counted[tooth, half, :, sheets.fillet :] |= allowed[tooth, half, :, sheets.fillet :]
-    beyond_chance = np.where(least[at] == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE) * stds
-    regions = []
-    for i in np.flatnonzero(sure):
-        region = _region(
-            sheets,
-            filled,
-            mask,
-            counted,
-            int(where[i, 0]),
-            int(where[i, 1]),
-            float(value[i]),
-            float(stds[i]),
-            volumes.deepest[i],
-            bool(volumes.pitted[i]),
-            cells.grid.size,
-            noise,
-            loop,
-            errors,
-        )
+    least = np.where(places.by_level, LEAST_VOLUME_OF_WORN_FLANK, np.where(places.pitted, LEAST_VOLUME_OF_PITS, LEAST_VOLUME))[at]
+    sure = (volumes.certainty > least) | (on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE))
+    stds = np.sqrt(np.diag(covariance))
+    beyond_chance = np.where(least == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE) * stds
+    mask, counted = (np.zeros_like(places.mask) for _ in range(2))
+    regions = list[WearRegion]()
+    for i in map(int, np.flatnonzero(sure)):
+        one = tuple(where[i])
+        standing = places.mask[one]
+        whole = standing.copy()
+        if volumes.rest[i] > 0.5:
+            whole[:, sheets.fillet :] |= places.allowed[one][:, sheets.fillet :]
+        region = _Flank.of(laid, volumes, i, standing, whole, where[i]).region(float(stds[i]), noise, loop, errors)
         deep = region.max_depth > BEYOND_CHANCE * region.max_depth_std
-        if whole[tuple(where[i])] or deep or region.volume > beyond_chance[i]:
+        sure[i] = places.whole[one] or deep or region.volume > beyond_chance[i]
+        if sure[i]:
             regions.append(region)
-        else:
-            sure[i] = False
-            mask[tuple(where[i])] = counted[tuple(where[i])] = False
+            mask[one], counted[one] = standing, whole
     regions.sort(key=lambda region: -region.volume)
-    unseen = sum(region.max_depth * float(beyond[region.tooth, region.side.index].sum()) for region in regions)
-    mask, depth = counted, np.where(counted, -filled, 0.0)
-    total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
-    hidden = _hidden_pits(cells, sheets, mask, regions)
-    looked_at = ~(rim(mask, around) | rim(at_ends, around))
-    faint = faint_wear(sheets, looked_at, noise, spread) if errors else math.nan
+    looked_at = ~(rim(counted, places.around) | rim(places.at_ends, places.around))
+    faint = faint_wear(sheets, looked_at, noise, places.spread) if errors else math.nan
     if errors and loop is not None:
         faint = max(faint, faint_sides(cells, noise, loop, ~looked_at, sheets.area))
-    unsure = sum(upper_limit(value, covariance, on_worn & ~sure & (where[:, 1] == side.index)) for side in worn)
-    flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop, gone) if limits else ()
+    unsure = sum(upper_limit(volumes.value, covariance, on_worn & ~sure & (where[:, 1] == side.index)) for side in worn)
+    flanks = flank_limits(
+        cells, sheets, counted, noise, places.spread, places.limit, LEAST_VOLUME, places.around, loop, gone
+    ) if limits else ()  # fmt: skip
     return Wear(
-        regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
-        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint + perhaps, burrs=burrs, edges=int(edges.sum()),
-        edge_depth=edge_depth, unseen=unseen, proud=proud, unsure=unsure,
+        regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=math.sqrt(float(covariance[np.ix_(sure, sure)].sum())),
+        side_maps=sheets, mask=counted, depth=np.where(counted, -volumes.filled, 0.0), spread=places.spread, limit=places.limit, flanks=flanks,
+        hidden_pits=_hidden_pits(cells, sheets, counted, regions), faint=faint + laid.perhaps, burrs=laid.burrs, edges=int(places.edges.sum()),
+        edge_depth=places.edge_depth, unseen=sum(region.max_depth * float(places.beyond[region.tooth, region.side.index].sum()) for region in regions),
+        proud=laid.proud, unsure=unsure,
     )  # fmt: skip
 
 
@@ -353,69 +298,71 @@ def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[Wear
     return max(volume / known * (more + NORMAL_95 * scatter), 0.0)
 
 
-def _region(
-    sheets: SideMaps,
-    filled: Floats,
-    mask: Bools,
-    counted: Bools,
-    tooth: int,
-    half: int,
-    volume: float,
-    std: float,
-    surface: Floats,
-    pitted: bool,
-    size: float,
-    noise: float,
-    loop: Loop | None,
-    errors: bool,
-) -> WearRegion:
-    """The wear of one side: its cells are those `counted`, its deepest place and pieces are of those of them that stand out, `mask`."""
-    standing, whole = mask[tooth, half], counted[tooth, half]
-    deepest, deep_std = float(surface[0]), math.nan
-    if errors or pitted or not np.isfinite(surface).all():
-        deepest, deep_std = _deepest(
-            sheets, np.where(standing, filled[tooth, half], 0.0), standing, tooth, half, surface, pitted, size, noise, loop
+@dataclass(frozen=True, slots=True)
+class _Flank:
+    """One tooth side: its cells (rows, columns) that stand out, and those that count as worn."""
+
+    sheets: SideMaps
+    filled: Floats
+    standing: Bools
+    whole: Bools
+    tooth: int
+    side: Side
+    size: float
+    volume: float
+    surface: Floats
+    pitted: bool
+
+    @classmethod
+    def of(cls, laid: LaidFlat, volumes: Volumes, which: int, standing: Bools, whole: Bools, place: Ints) -> _Flank:
+        """The side at `place`, tooth and half, of which `volumes` has the `which`-th volume."""
+        tooth, half = (int(i) for i in place)
+        return cls(
+            laid.sheets, volumes.filled[tooth, half], standing, whole, tooth, tuple(Side)[half], laid.cells.grid.size,
+            float(volumes.value[which]), volumes.deepest[which], bool(volumes.pitted[which]),
+        )  # fmt: skip
+
+    def region(self, std: float, noise: float, loop: Loop | None, errors: bool) -> WearRegion:
+        """The wear of the side, its volume known to `std`: its deepest place and pieces are of the cells that stand out."""
+        deepest, deep_std = float(self.surface[0]), math.nan
+        if errors or self.pitted or not np.isfinite(self.surface).all():
+            deepest, deep_std = self._deepest(noise, loop)
+        patches = int(ndimage.label(self.standing, np.ones((3, 3)))[1])
+        at, area_of = (self.tooth, self.side.index), self.sheets.area
+        depth = np.where(self.whole, -self.filled, 0.0)
+        weight = np.where(self.whole & self.sheets.seen[at], np.maximum(depth, 0.0) * area_of, 0.0)
+        position = np.nan_to_num(self.sheets.position[at])
+        centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
+        area = float((self.whole * area_of).sum())
+        mean = float((depth * area_of).sum()) / area
+        return WearRegion(
+            self.tooth, self.side, self.volume, std, deepest, mean, area, centroid, patches, len(self.standing) == 1, deep_std
         )
-    patches = int(ndimage.label(standing, np.ones((3, 3)))[1])
-    depth = np.where(whole, -filled[tooth, half], 0.0)
-    weight = np.where(whole & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
-    position = np.nan_to_num(sheets.position[tooth, half])
-    centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
-    area = float((whole * sheets.area).sum())
-    mean = float((depth * sheets.area).sum()) / area
-    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(standing) == 1, deep_std)
 
-
-def _deepest(
-    sheets: SideMaps,
-    deviation: Floats,
-    standing: Bools,
-    tooth: int,
-    half: int,
-    surface: Floats,
-    pitted: bool,
-    size: float,
-    noise: float,
-    loop: Loop | None,
-) -> tuple[float, float]:
-    """Depth of the deepest place among the cells of one side that stand out, and its standard deviation, mm."""
-    window = max(1, round(DEEPEST_OVER / size))
-    rows = min(window, len(standing))
-    white = noise / np.sqrt(np.maximum(sheets.count[tooth, half], 1.0))
-    if loop is None:
-        least, deep_std, usual_std = least_mean(deviation, standing, white, (rows, window))
-    else:
-        known = loop.covariance
-        steps = (known.row_step, known.column_step)
-        least, deep_std, usual_std = least_mean(deviation, standing, white, (rows, window), known.texture, steps)
-        deep_std, usual_std = (math.hypot(std, loop.as_made_std[half]) for std in (deep_std, usual_std))
-    deepest = -least
-    if np.isfinite(surface).all():
-        # How steep the surface may be it takes from the flank as a whole: where cells lie deeper than chance has it that is a pit. Half of what the two
-        # differ by is in the standard deviation, and a window of cells says how sure it can be at best: any one, for what the deepest of them would
-        # say hangs on luck, and of two scans the noisier one could look better known.
-        expected, deep_std, apart = float(surface[0]), max(usual_std, float(surface[1])), abs(deepest - float(surface[0]))
-        if not pitted:
-            deepest = expected
-        deep_std = max(deep_std, 0.5 * apart)
-    return deepest, deep_std
+    def _deepest(self, noise: float, loop: Loop | None) -> tuple[float, float]:
+        """Depth of the deepest place among the cells that stand out, and its standard deviation, mm."""
+        standing, deviation = self.standing, np.where(self.standing, self.filled, 0.0)
+        window = max(1, round(DEEPEST_OVER / self.size))
+        rows = min(window, len(standing))
+        white = noise / np.sqrt(np.maximum(self.sheets.count[self.tooth, self.side.index], 1.0))
+        if loop is None:
+            least, deep_std, usual_std = least_mean(deviation, standing, white, (rows, window))
+        else:
+            known = loop.covariance
+            steps = (known.row_step, known.column_step)
+            least, deep_std, usual_std = least_mean(deviation, standing, white, (rows, window), known.texture, steps)
+            deep_std, usual_std = (math.hypot(std, loop.as_made_std[self.side.index]) for std in (deep_std, usual_std))
+        deepest = -least
+        if np.isfinite(self.surface).all():
+            # How steep the surface may be it takes from the flank as a whole: where cells lie deeper than chance has it that is a pit. Half of what the
+            # two differ by is in the standard deviation, and a window of cells says how sure it can be at best: any one, for what the deepest of them
+            # would say hangs on luck, and of two scans the noisier one could look better known.
+            expected, deep_std, apart = (
+                float(self.surface[0]),
+                max(usual_std, float(self.surface[1])),
+                abs(deepest - float(self.surface[0])),
+            )
+            if not self.pitted:
+                deepest = expected
+            deep_std = max(deep_std, 0.5 * apart)
+        return deepest, deep_std

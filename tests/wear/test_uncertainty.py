@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gearwear.placing.side_maps import SideMaps
-from gearwear.wear import regions
+from gearwear.wear import places, regions
 from gearwear.wear.regions import find_wear
 from gearwear.wear.uncertainty import edge_covariance, torn_beyond
 from gearwear.wear.volume import Volumes
@@ -81,7 +81,7 @@ def test_what_the_same_cells_come_to_on_sides_without_wear_is_in_it(high, low):
         (region,) = wear.regions
         variance[share] = region.volume_std**2
     area = wear.side_maps.area[-1]
-    rim = round(regions.RIM * GEAR.transverse_module / cells.grid.size)
+    rim = round(places.RIM * GEAR.transverse_module / cells.grid.size)
     number = (12 + 2 * rim) ** 2
     each = np.array([high if side % 4 < 2 else low for side in range(24) if side != 8]) * area * number
     white = number * (NOISE * area) ** 2 / 4.0  # four points a cell: what is known of the noise is not counted twice

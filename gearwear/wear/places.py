@@ -1,0 +1,143 @@
+"""Where on the flanks metal is missing: the cells that stand out of the scan's own scatter, and what may be summed with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.side import Side
+from gearwear.diagnose.found import Loop
+from gearwear.placing.cells import Cells
+from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
+from gearwear.wear.burr import TipBurr, without_burrs
+from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
+from gearwear.wear.own_level import at_own_level, standing_proud
+
+RIM = 0.2
+"""Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaidFlat:
+    """Tooth sides as wear is looked for on them: within their ends, without burrs, each at the level it was made at.
+
+    Parameters
+    ----------
+    cells : Cells
+    sheets : SideMaps
+        The same, laid flat.
+    filled : (teeth, 2, rows, columns) float
+        The same with the unseen cells filled, mm.
+    burrs : tuple of TipBurr
+        What was taken off.
+    burr_std : (2,) float
+        What that leaves uncertain of a flank's volume, by side, mm³.
+    proud : (float, float)
+        What left and right flanks were lowered by, mm (`standing_proud`).
+    perhaps : float
+        What flanks that were raised would have lost were that wear, mm³ (`at_own_level`).
+    """
+
+    cells: Cells
+    sheets: SideMaps
+    filled: Floats
+    burrs: tuple[TipBurr, ...]
+    burr_std: Floats
+    proud: tuple[float, float]
+    perhaps: float
+
+
+def lay_flat(cells: Cells, noise: float, loop: Loop | None, worn: frozenset[Side]) -> LaidFlat:
+    """Tooth sides as wear is looked for on them; arguments as those of `regions.find_wear`."""
+    cells, perhaps = at_own_level(within_ends(cells, noise, loop), noise, loop, worn)
+    with_burrs = make_side_maps(cells)
+    filled = infill(with_burrs)
+    sheets, burrs, burr_std = without_burrs(with_burrs, filled, cells, noise, worn)
+    if burrs:
+        filled = infill(sheets)
+        taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
+        cells = cells.with_deviation(cells.points.deviation + taken)
+    proud = standing_proud(sheets, loop, worn)
+    if any(proud):
+        raised = np.broadcast_to(np.reshape(proud, (1, 2, 1, 1)), sheets.count.shape)
+        cells = cells.with_deviation(cells.points.deviation - cells.grid.on_cells(raised))
+        sheets = make_side_maps(cells)
+        filled = infill(sheets)
+    return LaidFlat(cells, sheets, filled, burrs, burr_std, proud, perhaps)
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Cells that stand out, before it is asked whether what they lack is more than chance.
+
+    Parameters
+    ----------
+    mask, wide, allowed : (teeth, 2, rows, columns) bool
+        The cells; with the rim that is summed with them; what may be summed at all.
+    at_ends : (teeth, 2, rows, columns) bool
+        Cells that stand out on flanks where these are next to an end alone: no wear.
+    edges : (teeth, 2) bool
+        Those flanks.
+    edge_depth : float
+        Depth of the deepest of those cells, mm.
+    pitted : (teeth, 2) bool
+        Flanks where more points lie far below than strays can.
+    by_level, whole : (teeth, 2) bool
+        Flanks known to be worn all over by their level; the same or by their side.
+    beyond : (teeth, 2, rows, columns) float
+        Area of what is low past the edge of what was seen on any flank, mm².
+    spread, limit : float
+        As of `regions.Wear`, mm.
+    around : int
+        Width of the rim, cells.
+    """
+
+    mask: Bools
+    wide: Bools
+    allowed: Bools
+    at_ends: Bools
+    edges: Bools
+    edge_depth: float
+    pitted: Bools
+    by_level: Bools
+    whole: Bools
+    beyond: Floats
+    spread: float
+    limit: float
+    around: int
+
+
+def standing_out(laid: LaidFlat, noise: float, loop: Loop | None, worn: frozenset[Side], gone: Bools) -> Places:
+    """The cells that stand out; arguments as those of `regions.find_wear`."""
+    cells, sheets, filled = laid.cells, laid.sheets, laid.filled
+    gear, grid = cells.grid.gear, cells.grid
+    local, number = window_mean(sheets)
+    mask, spread, limit = worn_cells(local, number, noise)
+    pits: Bools = np.zeros_like(mask) if cells.far is None else grid.sides(cells.far.hung)
+    mask |= between(pits, sheets.fillet)
+    mask &= ~gone
+    zone = end_zone(sheets, cells)
+    edges = at_ends_only(mask, zone)
+    corners: Bools = np.zeros_like(zone)
+    for side in worn if len(worn) == 1 else ():  # of both sides nothing tells what was made from what was lost
+        corners[side.index] = shared_edges(sheets, zone, gear.transverse_module, noise)[side.index]
+    on_edges = edges[:, :, None, None]
+    at_ends = mask & on_edges
+    mask &= ~on_edges
+    by_level = np.zeros(edges.shape, dtype=np.bool_) if loop is None or loop.worn_flanks is None else loop.worn_flanks
+    whole = by_level.copy()
+    whole[:, [side.index for side in worn]] = True
+    mask[whole, :, sheets.fillet :] = True
+    on_gear = grid.toothed[:, None] & ~corners & ~gone
+    known = seen_places(grid.sides(cells.count), sheets.fillet)
+    beyond = ((on_gear & ~known & (filled < -limit)) * sheets.area)[..., sheets.fillet :]
+    allowed = on_gear & known
+    mask &= allowed
+    around = max(1, round(RIM * gear.transverse_module / grid.size))
+    return Places(
+        mask=mask, wide=rim(mask, around) & allowed, allowed=allowed, at_ends=at_ends, edges=edges,
+        edge_depth=-float(filled[at_ends].min(initial=0.0)), pitted=np.asarray(pits.any(axis=(2, 3))), by_level=by_level, whole=whole,
+        beyond=beyond, spread=spread, limit=limit, around=around,
+    )  # fmt: skip
