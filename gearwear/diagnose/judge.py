@@ -33,6 +33,8 @@ class Evidence:
         Corrected for all candidates tried.
     held_out_gain, held_out_error : float
         Mean fall of the left-out mean square per fold in µm², and its standard error.
+    shown, shown_error : float
+        How much of what the others predict of the effect the left-out show: 1 where it is there, and its standard error.
     contribution : float
         Root mean square of what it explains that the others of the model cannot, mm.
     size : float
@@ -46,6 +48,8 @@ class Evidence:
     p_value: float
     held_out_gain: float
     held_out_error: float
+    shown: float
+    shown_error: float
     contribution: float
     size: float
     accepted: bool
@@ -101,22 +105,60 @@ def judge(
     freedom = max(number - len(which), 1.0)
     tried = len(problem.dictionary.candidates)
     p_value = min(1.0, tried * float(fdtrc(q, freedom, max(wald / q, 0.0))))
-    every = np.arange(len(which))
-    left, kept = folded.held_out(np.setdiff1d(every, at)), folded.held_out(every)
-    seen = folded.weight > 0.0
-    per_fold = (left - kept)[seen] / folded.weight[seen] * 1e6
-    mean, error = float(per_fold.mean()), float(per_fold.std(ddof=1) / math.sqrt(max(len(per_fold), 2)))
-    # A jump or a single bad tooth gains much in one fold and little in the others: the log of the ratio is not ruled by it.
-    ratio = np.log(np.maximum(left[seen], 1e-300) / np.maximum(kept[seen], 1e-300))
+    left_out = _left_out(folded, np.setdiff1d(np.arange(len(which)), at), np.arange(len(which)))
     asked = rules().errors_by_tooth if candidate.effect.tooth_specific else rules().errors
-    holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > asked and mean > 0.0
+    holds = left_out.share > max(
+        0.5, asked * left_out.share_error
+    )  # at half, the left-out are explained no better with it than without
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
     least = max(rules().least_share * noise, rules().least_of_largest * _largest(problem, chosen))
     # Once others are gone it may have turned into what it cannot be: a relief that adds metal.
     allowed = candidate.effect.allowed(own, candidate.shape, problem.context)
     accepted = p_value < rules().significance and holds and contribution > least and allowed
-    return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, _size(problem, candidate, own), accepted)
+    return Evidence(
+        wald / q, (q, freedom), number, p_value, left_out.gain, left_out.gain_error, left_out.share, left_out.share_error, contribution,
+        _size(problem, candidate, own), accepted,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _LeftOut:
+    """What left-out folds show of an effect: as `Evidence`."""
+
+    gain: float
+    gain_error: float
+    share: float
+    share_error: float
+
+
+def _left_out(folded: Gram, rest: Ints, every: Ints) -> _LeftOut:
+    """What left-out folds show of the effect that a model, columns `every`, has beyond those of `rest`.
+
+    Notes
+    -----
+    The other folds predict a field of the effect on each, f; s is what that fold's residual without the effect has along it, ``f · r / f · f``. The mean
+    weighted by f · f is the share shown. Its standard error comes from what the folds differ in s: an effect that is large on some teeth and
+    small on others, as a drift is on both hands of its jump, is no worse known for that; of one bad tooth that the rest say nothing of, s is 0.
+    """
+    predicted, along = (np.zeros(len(folded.square)) for _ in range(2))
+    for fold in range(len(folded.square)):
+        amplitudes = folded.solve(every, without=fold)[0]
+        without = folded.solve(rest, without=fold)[0]
+        information, moment = folded.information[fold], folded.moment[fold]
+        step = np.zeros(len(information))
+        step[every] += amplitudes
+        step[rest] -= without
+        predicted[fold] = step @ information @ step
+        along[fold] = step[every] @ moment[every] - step[every] @ information[np.ix_(every, rest)] @ without
+    seen = folded.weight > 0.0
+    predicted, along, weight = predicted[seen], along[seen], folded.weight[seen]
+    number, total = len(weight), max(float(predicted.sum()), 1e-300)
+    share = float(along.sum()) / total
+    error = math.sqrt(number / max(number - 1, 1) * float(((along - share * predicted) ** 2).sum())) / total
+    mean = 1e6 * predicted / weight
+    gain = float((1e6 * (2.0 * along - predicted) / weight).mean())
+    return _LeftOut(gain, 2.0 * error * float(mean.mean()), share, error)
 
 
 def _largest(problem: Problem, chosen: tuple[Candidate, ...]) -> float:
@@ -134,11 +176,6 @@ def _size(problem: Problem, candidate: Candidate, amplitudes: Floats) -> float:
     cross = information[np.ix_(own, pose)]
     left = information[np.ix_(own, own)] - cross @ inverse @ cross.T
     return math.sqrt(max(float(amplitudes @ left @ amplitudes), 0.0) / float(problem.gram.weight.sum()))
-
-
-def _standard_errors(values: Floats) -> float:
-    """Mean in its own standard errors."""
-    return float(values.mean() / max(float(values.std(ddof=1)) / math.sqrt(len(values)), 1e-300)) if len(values) > 1 else 0.0
 
 
 def _positions(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> Ints:

@@ -123,7 +123,7 @@ class Rules:
 
     # The judgement.
     significance: float = rule(
-        0.01, "p", "literature: family-wise level, Bonferroni", "greatest p, corrected for all candidates", off=1.0
+        0.001, "p", "literature: family-wise level, Bonferroni", "greatest p, corrected for all candidates", off=1.0
     )
     errors: float = rule(
         3.0,
@@ -259,6 +259,20 @@ class Rules:
         "tuned: 17 real ground gears (0.02 to 0.09), family k of benchmarks/families (0.13 to 0.28)",
         "standard deviation of the teeth's shares of a loss, in their mean, below which all teeth may have been cut so",
         off=0.0,
+    )
+    least_load: float = rule(
+        1.0 / 6.0,
+        "1",
+        "derived: a third of the load, at half of the specific sliding in proportion to the way",
+        "what a place of a worn flank has lost at least, in proportion to its way from the pitch point, of what one nearer to it has",
+        off=0.0,
+    )
+    least_way: float = rule(
+        0.2,
+        "1",
+        "derived: at the pitch point nothing slides, and a loss tells no load",
+        "share of the farthest way from the pitch point from which on a loss tells the load",
+        off=1.0,
     )
     proud: float = rule(
         0.5,

@@ -40,6 +40,8 @@ from gearwear.placing.edges import rounded_ends
 from gearwear.processors import each
 
 NO_SIDE: frozenset[Side] = frozenset()
+GROUND = 5
+"""Flank class of ground gears: no flank has less form, as far as it can be told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,8 +226,8 @@ class _Scan:
     def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> float | None:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
 
-        A loss of no shape that wear has by itself, which all teeth have alike and flanks of the gear's class may be cut with, costs no less than
-        `unworn`.
+        A loss of no shape that wear has by itself, which all teeth have alike, costs no less than `unworn` where flanks of the gear's class may be cut
+        with it, or where no load leaves it.
         """
         cells, context = self.fit.cells, self.problem.context
         law, sides = wear_columns(cells, context, worn)
@@ -249,7 +251,7 @@ class _Scan:
             allowed = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
             for law, on in any_wear_columns(cells, context, worn):
                 for lost in self.losses(model, worn, law, on):
-                    as_cut = not lost.uneven and self._form(lost.loss, side) <= allowed
+                    as_cut = not lost.uneven and (self._form(lost.loss, side) <= allowed or not self._as_slid(lost.loss, side))
                     costs.append(max(lost.cost, unworn) if as_cut else lost.cost)
         return min(costs, default=None)
 
@@ -260,6 +262,19 @@ class _Scan:
         roll, height = points.roll[rows], points.position[rows, 2]
         plane = np.column_stack([np.ones(len(rows)), roll, height, roll * height])
         return float(np.ptp(loss[rows] - plane @ np.linalg.lstsq(plane, loss[rows])[0]))
+
+    def _as_slid(self, loss: Floats, side: Side) -> bool:
+        """`as_slid` of a loss (m,) on the flanks of a side."""
+        points, edges = self.fit.cells.points, self.fit.cells.grid.roll_edges
+        rows = self.rows[(points.surface == FLANK)[self.rows] & (points.side == int(side))[self.rows]]
+        middle = 0.5 * (edges[:-1] + edges[1:])
+        column = np.abs(points.roll[rows, None] - middle).argmin(axis=1)
+        number = np.bincount(column, minlength=len(middle))
+        lost = -np.bincount(column, loss[rows], len(middle)) / np.maximum(number, 1)
+        seen, gear = number > 0, self.fit.cells.grid.gear
+        return as_slid(
+            lost[seen], middle[seen] - self.problem.context.pitch_roll, profile_form_tolerance(gear.normal_module, GROUND)
+        )
 
     def losses(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[_Loss]:
         """The losses of some shapes on some sides, each beside the best model; none where what these have in common is none of them.
@@ -354,6 +369,21 @@ class _Scan:
         """The search beside some columns of a law, which are in every fit as the pose is."""
         with_law = replace(wide, pose=np.concatenate([wide.pose, lost]))
         return Problem(with_law, gram, self.problem.unit, self.problem.context, self.problem.always)
+
+
+def as_slid(lost: Floats, way: Floats, made: float) -> bool:
+    """Whether a loss along the profile, (n,) mm, may follow load times sliding; `way` (n,) mm is how far up the line of action the pitch point lies behind.
+
+    Away from the pitch point flanks slide faster, and two pairs of teeth share the load: further out each carries a third of it at least, at specific sliding of
+    at least half. So where a place has lost anything, all beyond have lost a part of that times their way; but for what flanks are made with, `made` mm.
+    """
+    for half in (way < 0.0, way >= 0.0):
+        half = half & (np.abs(way) > rules().least_way * np.abs(way[half]).max(initial=0.0))
+        outward = np.flatnonzero(half)[np.argsort(np.abs(way[half]))]
+        load = (lost[outward] - lost.min()) / np.abs(way[outward])
+        if ((rules().least_load * np.maximum.accumulate(load) - load) * np.abs(way[outward]) > made).any():
+            return False
+    return True
 
 
 def _columns_of(model: Model) -> tuple[int, ...]:

@@ -60,6 +60,47 @@ def test_noise_is_not_accepted_and_a_shared_field_is():
     assert all(evidence(noise(seed) + 0.003 * U, [(Toy("u"), U)]).accepted for seed in range(20))
 
 
+JUMP = np.where(AT.tooth < 6, AT.tooth / 5.5 - 1.0, (AT.tooth - 11.0) / 5.5) ** 5
+"""Round the gear, about nothing but on a few teeth: what a drift is on both hands of its jump."""
+
+
+def test_without_noise_left_out_teeth_show_all_of_a_field_that_is_theirs():
+    found = evidence(0.002 * U + 0.001 * ZETA, [(Toy("u"), U), (Toy("z"), ZETA)])
+    assert found.shown == pytest.approx(1.0, abs=1e-6)
+    assert found.shown_error < 1e-6
+    gain = 1e6 * 0.002**2 * np.mean((U - U.mean()) ** 2)
+    assert found.held_out_gain == pytest.approx(gain, rel=0.02)  # each left-out tooth is fitted about a mean of its own
+
+
+def test_gain_is_the_fall_of_the_left_out_mean_squares():
+    deviation, blocks = noise(3) + 0.001 * U, [(Toy("u"), U[..., None]), (Toy("z"), ZETA[..., None])]
+    fit = fit_of(grid(), deviation, blocks, NOISE, COUNT)
+    problem, model, (by_tooth, _) = fit.problem(1.0, None), fit.dictionary.candidates, folds(fit.cells)
+    folded = fit.folded(model, by_tooth)
+    every = np.arange(len(problem.columns(model)))
+    fall = folded.held_out(np.delete(every, -2)) - folded.held_out(every)
+    found = judge(problem, model, 0, fit.use, fit.covariance, folded, NOISE)
+    assert found.held_out_gain == pytest.approx(1e6 * np.mean(fall / folded.weight), rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_large_on_a_few_teeth_alone_is_shown_by_those(seed):
+    """The gain differs from tooth to tooth as the field does: against that scatter it would be nothing sure."""
+    found = evidence(noise(seed) + 0.003 * JUMP, [(Toy("jump"), JUMP)])
+    assert found.accepted
+    assert abs(found.shown - 1.0) < 4.0 * found.shown_error
+    assert found.shown_error < 0.1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_one_bad_tooth_speaks_for_no_effect_of_all(seed):
+    """It rules the fit, and what that predicts the others do not show."""
+    bad = np.where(AT.tooth == 3, 0.02 * U, 0.0)
+    found = evidence(noise(seed) + bad, [(Toy("u"), U)])
+    assert found.p_value < 1e-6
+    assert not found.accepted
+
+
 @pytest.mark.parametrize(("amplitude", "accepted"), [(0.003, True), (-0.003, False)])
 def test_what_an_effect_cannot_be_is_not_accepted_however_clear(amplitude, accepted):
     """A relief takes metal away: left alone by others that fell, it may be fitted as adding some."""

@@ -20,7 +20,7 @@ from gearwear.diagnose.found import _made_on, form_of_all
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.masks import not_stray
 from gearwear.diagnose.pattern import Pattern
-from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, _by_tooth
+from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, _by_tooth, as_slid
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
 from tests.synthetic import AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SlidingWear, make_scan
@@ -221,3 +221,46 @@ def test_the_share_of_a_flank_is_the_loss_on_that_flank_and_nothing_elsewhere():
     flanks = [(tooth, side) for tooth in range(PINION.teeth) if tooth != 4 for side in (-1, 1)]
     expected = [np.where((points.tooth == tooth) & (points.side == side), loss, 0.0) for tooth, side in flanks]
     np.testing.assert_array_equal(columns, np.column_stack(expected))
+
+
+WAY = np.linspace(1.6, 24.8, 24) - 13.0
+"""From the form circle of the paper's pinion to its tip, along the line of action from the pitch point, mm."""
+SLIDING = np.abs(1.5 * WAY / (WAY + 13.0))
+"""Specific sliding with a mate of twice its teeth: 1.5 (1 − L_pitch / L)."""
+TWO_PAIRS = np.where((WAY > -5.0) & (WAY < 5.0), 1.0, 1.0 / 3.0)
+MADE = 0.008
+RIPPLE = 0.02 * np.cos(2.0 * np.pi * WAY / 12.4)
+
+
+@pytest.mark.parametrize(
+    ("lost", "slid"),
+    [
+        (0.03 * SLIDING, True),
+        (0.03 * SLIDING * TWO_PAIRS, True),
+        (0.1 * SLIDING * TWO_PAIRS + 0.05, True),  # and an even loss
+        (0.03 * np.abs(WAY) / 12.0, True),
+        (0.1 * np.abs(WAY) / 12.0 * TWO_PAIRS, True),
+        (0.03 * SLIDING * (WAY < 0.0), True),
+        (0.02 + RIPPLE, False),
+        (0.02 - RIPPLE, False),
+        (0.1 * np.abs(WAY) / 12.0 * np.where(np.abs(WAY - 8.0) < 2.0, 0.0, 1.0), False),  # spared between places that carried
+        (0.05 * np.exp(-(((WAY - 5.0) / 2.0) ** 2)), False),  # and a hollow of which nothing is beyond
+    ],
+    ids=[
+        "sliding",
+        "shared",
+        "shared, even",
+        "way",
+        "way, shared",
+        "dedendum",
+        "ripple",
+        "ripple the other way",
+        "spared",
+        "hollow",
+    ],
+)
+def test_a_loss_that_follows_load_times_sliding_spares_nothing_beyond(lost, slid):
+    """Where two pairs mesh each carries a third at least; a ripple of more than a wave does not come from it."""
+    assert as_slid(lost, WAY, MADE) is slid
+    assert as_slid(lost + 0.0005 * np.cos(1e3 * WAY), WAY, MADE) is slid
+    assert as_slid(lost[::-1], WAY[::-1], MADE) is slid
