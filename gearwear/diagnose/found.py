@@ -21,6 +21,7 @@ from gearwear.diagnose.effects.base import MADE, Context, Kind
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
+from gearwear.diagnose.jumps import jump_deviations
 from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
@@ -267,6 +268,11 @@ def account(
         values = np.concatenate([candidate.effect.magnitudes(amplitudes[part]), candidate.shape[: len(ranges)]])
         form = (rules().form_error_with_shape if ranges else rules().form_error) * values
         spread_and_form = spread[i] + np.diag(form**2)
+        jumps = jump_deviations(fit, model, i, problem.unit, problem.context)
+        if jumps is not None:
+            at = len(candidate.columns) + np.arange(len(jumps))
+            spread_and_form[at] = spread_and_form[:, at] = 0.0
+            spread_and_form[at, at] = jumps**2
         parameters = candidate.effect.estimates(amplitudes[part], spread_and_form, candidate.shape, problem.context)
         known += sizes(candidate, i, amplitudes[part], spread_and_form, places[i][: part.stop - part.start], problem.context)
         found.append(

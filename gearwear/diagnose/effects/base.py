@@ -18,10 +18,9 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
-from gearwear.design.twist import drawn_height, helix_coordinate
+from gearwear.design.twist import helix_coordinate
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.parameter import ParameterEstimate as ParameterEstimate
-from gearwear.placing.cells import FINEST
 
 Shape = tuple[float, ...]
 """Values of an effect's nonlinear parameters; () where it has none. Continuous values first, then choices (a side, a surface)."""
@@ -314,31 +313,6 @@ def polar_estimate(amplitudes: Floats, covariance: Floats) -> tuple[float, float
     across = np.array([-along[1], along[0]])
     var_size, var_across = float(along @ own @ along), float(across @ own @ across)
     return size, math.sqrt(max(var_size, 0.0)), math.atan2(-b, a), math.sqrt(max(var_across, 0.0)) / max(size, 1e-300)
-
-
-def seam_deviation(evidence: float, gear: Gear, place: float) -> float:
-    """Standard deviation (rad) of the place of a jump round the gear.
-
-    Parameters
-    ----------
-    evidence : float
-        Square of the jump over the noise, summed over the points of one radian.
-    gear : Gear
-    place : float
-        Where the jump was found, rad.
-
-    Notes
-    -----
-    Lands do not show a turn: a jump on one may be anywhere on it. On a side, the place of a jump in noise is where a two-sided Brownian motion with a drift of −½ is highest, in units of 1 / `evidence`;
-    that has the variance 2 ∫ e^−m (1 − e^−m) (4 m² + 8 m) dm = 26 (m its height, by the times of first passage). A cell of the scan is the least that can be told.
-    """
-    cell = FINEST * gear.transverse_module / gear.reference_radius
-    within = abs(math.remainder(place, gear.pitch_angle))
-    tip, bottom = gear.tip_half_angle, gear.root_half_angle
-    middle = drawn_height(gear)
-    tip, bottom = (max(half - middle * abs(gear.twist), 0.0) for half in (tip, bottom))  # helical lands run round
-    land = tip if within < tip + cell else bottom if within > 0.5 * gear.pitch_angle - bottom - cell else 0.0
-    return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0), land / math.sqrt(3.0)), math.pi)
 
 
 def radial(points: SurfacePoints) -> Floats:

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, seam_deviation, turned, turning
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, turned, turning
 from gearwear.diagnose.parameter import Parameter, ParameterEstimate, Spread, angular
 
 FEWEST_STARTS, MOST_STARTS = 24, 72
@@ -51,14 +51,9 @@ class ScanDrift(CatalogueEffect):
         return [(shape[0] - step, shape[0] + step)]
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
-        closure, variance = float(amplitudes[0]), float(covariance[0, 0])
-        # The jump is c; the mean square of c (share − ½) is c² / 12.
-        evidence = closure**2 / max(variance, 1e-300) * 12.0 / (2.0 * math.pi)
-        step, start = self.parameters
-        return {
-            step.name: step.estimate(closure, math.sqrt(max(variance, 0.0))),
-            start.name: start.estimate(shape[0], seam_deviation(evidence, context.gear, shape[0])),
-        }
+        std = np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist()
+        values = (float(amplitudes[0]), shape[0])
+        return {one.name: one.estimate(value, own) for one, value, own in zip(self.parameters, values, std, strict=True)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         share = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) / (2.0 * np.pi)

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, seam_deviation, turning
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, turning
 from gearwear.diagnose.parameter import Parameter, ParameterEstimate, Spread, angular
 
 VIEW_REGISTRATION = "view_registration"
@@ -55,13 +55,9 @@ class ViewRegistration(CatalogueEffect):
         return math.hypot(*amplitudes[:2]) < 1.0 and abs(float(amplitudes[2])) < math.radians(2.0)
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
-        own = np.nan_to_num(covariance[:3, :3])
-        std = np.sqrt(np.maximum(np.diag(own), 0.0))
-        evidence = float(amplitudes @ np.linalg.pinv(own) @ amplitudes) / (shape[1] - shape[0])
-        border = [seam_deviation(evidence, context.gear, place) for place in shape]
+        std = np.sqrt(np.maximum(np.nan_to_num(np.diag(covariance)), 0.0)).tolist()
         values = (*amplitudes.tolist(), *shape)
-        spread = (*std.tolist(), *border)
-        return {one.name: one.estimate(value, std) for one, value, std in zip(self.parameters, values, spread, strict=True)}
+        return {one.name: one.estimate(value, own) for one, value, own in zip(self.parameters, values, std, strict=True)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         inside = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) < shape[1] - shape[0]
