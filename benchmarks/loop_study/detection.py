@@ -228,7 +228,7 @@ def visibilities(scenario: Scenario, scan: SyntheticScan, fitted: Fitted, gear: 
             # nothing is known of it beforehand: it may be anywhere in the spectrum of the tooth sides
             rule = Rule(RULES.significance / float(cells.grid.count), 1, RULES.least_share * noise)
         else:
-            rule = Rule(RULES.significance / fitted.loop.tried, freedoms(effect, gear), RULES.least_share * noise)
+            rule = Rule(RULES.significance_of_names / fitted.loop.tried, freedoms(effect, gear), RULES.least_share * noise)
         result[effect.name] = visibility(fields, i, pose, weight, cover, rule)
     return result
 

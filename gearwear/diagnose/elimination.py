@@ -108,6 +108,8 @@ def _without_cancelled(problem: Problem, model: Model, evidence: list[Evidence],
         if kept[i] or candidate.effect.kind is Kind.FORM:
             continue
         without = with_levels(problem, model[:i] + model[i + 1 :], levels)
+        if problem.cost(without) - problem.cost(model) > rules().close:
+            continue  # tips, roots and ends that all lie off by the same are a coat, and no chance
         beside = problem.columns(without)
         gain = float(problem.gram.gains(beside, [candidate.columns])[0])
         left.append((math.sqrt(max(gain, 0.0) / weight) / max(evidence[i].size, 1e-12), without))

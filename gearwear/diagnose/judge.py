@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import fdtrc
+from scipy.special import fdtrc, stdtrit
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.diagnose.covariance import CellCovariance, effective_number
@@ -106,16 +106,15 @@ def judge(
     tried = len(problem.dictionary.candidates)
     p_value = min(1.0, tried * float(fdtrc(q, freedom, max(wald / q, 0.0))))
     left_out = _left_out(folded, np.setdiff1d(np.arange(len(which)), at), np.arange(len(which)))
-    asked = rules().errors_by_tooth if candidate.effect.tooth_specific else rules().errors
-    holds = left_out.share > max(
-        0.5, asked * left_out.share_error
-    )  # at half, the left-out are explained no better with it than without
+    asked = float(stdtrit(left_out.number - 1, 1.0 - min(rules().significance / tried, 0.5)))
+    # At half of it the left-out are explained no better with the effect than without.
+    holds = left_out.share > max(0.5, asked * left_out.share_error)
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
     least = max(rules().least_share * noise, rules().least_of_largest * _largest(problem, chosen))
     # Once others are gone it may have turned into what it cannot be: a relief that adds metal.
     allowed = candidate.effect.allowed(own, candidate.shape, problem.context)
-    accepted = p_value < rules().significance and holds and contribution > least and allowed
+    accepted = p_value < rules().significance_of_names and holds and contribution > least and allowed
     return Evidence(
         wald / q, (q, freedom), number, p_value, left_out.gain, left_out.gain_error, left_out.share, left_out.share_error, contribution,
         _size(problem, candidate, own), accepted,
@@ -130,6 +129,7 @@ class _LeftOut:
     gain_error: float
     share: float
     share_error: float
+    number: int
 
 
 def _left_out(folded: Gram, rest: Ints, every: Ints) -> _LeftOut:
@@ -158,7 +158,7 @@ def _left_out(folded: Gram, rest: Ints, every: Ints) -> _LeftOut:
     error = math.sqrt(number / max(number - 1, 1) * float(((along - share * predicted) ** 2).sum())) / total
     mean = 1e6 * predicted / weight
     gain = float((1e6 * (2.0 * along - predicted) / weight).mean())
-    return _LeftOut(gain, 2.0 * error * float(mean.mean()), share, error)
+    return _LeftOut(gain, 2.0 * error * float(mean.mean()), share, error, number)
 
 
 def _largest(problem: Problem, chosen: tuple[Candidate, ...]) -> float:
@@ -192,7 +192,7 @@ def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     that hardly pays for its parameters, as pitch errors tooth by tooth.
     """
     found = {candidate.name for candidate, _ in replacements(problem, chosen, index)}
-    others = alike(problem, chosen, index) + smooth_parts(problem, chosen, index)
+    others = alike(problem, chosen, index) + smooth_parts(problem, chosen, index) + by_tooth(problem, chosen, index)
     return tuple(sorted(found | {candidate.name for candidate in others}))
 
 
@@ -238,6 +238,24 @@ def smooth_parts(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
         if enough and math.isfinite(problem.cost((*rest, candidate))):
             found.append(candidate)
     return found
+
+
+def by_tooth(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[Candidate]:
+    """What the maker may have left on each tooth that explains a measurement effect as well: but for what so many parameters explain by chance, no more
+    than `close` is lost. A table that is off turns the flanks within a tooth too, and only that tells it from the gear's own index."""
+    own = chosen[index]
+    if own.effect.tooth_specific or own.effect.kind is not Kind.MEASUREMENT:
+        return []
+    names = {c.name for c in chosen}
+    others = [
+        c
+        for c in problem.dictionary.candidates
+        if c.effect.tooth_specific and c.effect.kind is Kind.MANUFACTURE and c.name not in names
+    ]
+    rest = chosen[:index] + chosen[index + 1 :]
+    gain, *gains = problem.gram.gains(problem.columns(rest), [own.columns, *(c.columns for c in others)])
+    lost = [float(gain - one) / problem.unit + len(c.columns) for c, one in zip(others, gains, strict=True)]
+    return [c for c, one in zip(others, lost, strict=True) if one < rules().close and math.isfinite(problem.cost((*rest, c)))]
 
 
 def _takes(problem: Problem, model: tuple[Candidate, ...], effect: Candidate, gain: float) -> bool:

@@ -145,7 +145,7 @@ def fake_effect(
 ) -> FoundEffect:
     """An effect of the catalogue as the loop would have found it; RMS in µm."""
     effect = next(one for one in catalogue() if one.name == name)
-    evidence = Evidence(412.7, (1.0, 1892.0), 1893.0, 3e-12, 1.0, 0.1, 0.01, 0.02, True)
+    evidence = Evidence(412.7, (1.0, 1892.0), 1893.0, 3e-12, 1.0, 0.1, 0.99, 0.04, 0.01, 0.02, True)
     before, after = 1e-3 * rms[0], 1e-3 * rms[1]
     candidate = Candidate(effect, (), np.zeros(1, dtype=np.int64))
     return FoundEffect(

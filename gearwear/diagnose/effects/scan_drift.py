@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, turned, turning
-from gearwear.diagnose.parameter import Parameter, ParameterEstimate, Spread, angular
+from gearwear.diagnose.parameter import Parameter, Spread, angular
 
 FEWEST_STARTS, MOST_STARTS = 24, 72
 
@@ -49,11 +49,6 @@ class ScanDrift(CatalogueEffect):
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         step = self._step(context)
         return [(shape[0] - step, shape[0] + step)]
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
-        std = np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist()
-        values = (float(amplitudes[0]), shape[0])
-        return {one.name: one.estimate(value, own) for one, value, own in zip(self.parameters, values, std, strict=True)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         share = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) / (2.0 * np.pi)

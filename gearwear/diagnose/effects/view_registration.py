@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, turning
-from gearwear.diagnose.parameter import Parameter, ParameterEstimate, Spread, angular
+from gearwear.diagnose.parameter import Parameter, Spread, angular
 
 VIEW_REGISTRATION = "view_registration"
 """The effect that puts a view beside the others."""
@@ -53,11 +53,6 @@ class ViewRegistration(CatalogueEffect):
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes[:2]) < 1.0 and abs(float(amplitudes[2])) < math.radians(2.0)
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
-        std = np.sqrt(np.maximum(np.nan_to_num(np.diag(covariance)), 0.0)).tolist()
-        values = (*amplitudes.tolist(), *shape)
-        return {one.name: one.estimate(value, own) for one, value, own in zip(self.parameters, values, std, strict=True)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         inside = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) < shape[1] - shape[0]

@@ -86,6 +86,27 @@ def test_what_the_drawing_leaves_open_is_no_coat_on_thin_teeth(tolerance, named)
     assert {candidate.name for candidate in found.model} == named
 
 
+@pytest.mark.parametrize(
+    ("second", "named"), [(0.030, {"coat", "thin"}), (0.036, {"tip", "end", "bottom"})], ids=["alike", "not alike"]
+)
+def test_what_lies_off_by_the_same_everywhere_is_a_coat_though_the_drawing_leaves_it_open(second, named):
+    """Three surfaces off by the same amount, each within its tolerance: one cause beside thin teeth, where three chances would have to agree."""
+    third = np.minimum((3.0 * AT.z).astype(int), 2)
+    tip, end, bottom = (np.where(third == number, np.abs(U), 0.0) for number in range(3))
+    flank = np.broadcast_to(np.where(AT.across > 0.5, 1.0, 0.0), U.shape)
+    outside = [field * (1.0 - flank) for field in (tip, end, bottom)]
+    coat = sum(outside) + flank
+    levels = [
+        (Toy(name, kind=Kind.FORM, limit=0.05), field) for name, field in zip(("tip", "end", "bottom"), outside, strict=True)
+    ]
+    blocks = [(Toy("coat"), coat), (Toy("thin"), -flank), *levels]
+    rng = np.random.default_rng(2)
+    deviation = 0.03 * outside[0] + second * outside[1] + 0.03 * outside[2] + NOISE / np.sqrt(COUNT) * rng.normal(size=U.shape)
+    fit = fit_of(grid(), deviation, [(toy, field[..., None]) for toy, field in blocks], NOISE, COUNT)
+    found = eliminate(fit, fit.problem(1.0, None), fit.dictionary.candidates[:2], NOISE)
+    assert {candidate.name for candidate in found.model} == named
+
+
 def test_two_that_add_both_stand():
     rest = U**3 - 0.6 * U
     assert stood(0.01 * U + 0.004 * rest, (Toy("one"), U), (Toy("other"), rest))[0] == {"one", "other"}

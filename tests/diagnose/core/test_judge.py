@@ -173,3 +173,18 @@ def test_most_of_what_each_tooth_has_may_be_a_wave_of_the_table(table, told):
     errors = 0.001 * np.random.default_rng(7).normal(size=12)
     fit = fit_of(grid(), table * wave[..., 1] + errors[AT.tooth] + noise(8), blocks, NOISE, COUNT)
     assert alternatives(fit.problem(1.0, None), fit.dictionary.candidates[:1], 0) == told
+
+
+@pytest.mark.parametrize(("within", "told"), [(0.0, ("teeth",)), (0.6, ())], ids=["not within a tooth", "within a tooth"])
+def test_an_error_of_the_table_may_be_the_index_unless_flanks_turn_within_a_tooth(within, told):
+    """A wave round the gear that is the same all over a flank is twelve numbers, one for each tooth, as well."""
+    angle = 2.0 * np.pi * AT.tooth / 12.0 + within * U
+    wave = np.cos(2.0 * angle)
+    teeth = np.where(AT.tooth[..., None] == np.arange(12), np.ones_like(U)[..., None], 0.0)
+    blocks = [
+        (Toy("table", kind=Kind.MEASUREMENT), wave[..., None]),
+        (Toy("teeth", tooth_specific=True), teeth),
+        (Toy("mount", tooth_specific=True, kind=Kind.MEASUREMENT), teeth),
+    ]
+    fit = fit_of(grid(), 0.002 * wave + noise(9), blocks, NOISE, COUNT)
+    assert alternatives(fit.problem(1.0, None), fit.dictionary.candidates[:1], 0) == told
