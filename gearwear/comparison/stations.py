@@ -59,7 +59,7 @@ from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profi
 from gearwear.wear.regions import UNIT, Wear, find_wear
 from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.smooth import WornSurface, smooth_surface
-from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
+from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, signed_difference, worn_volume
 from gearwear.wear.thickness import SectionThickness, thickness_of
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
@@ -478,7 +478,7 @@ def _solid(measured: MeasuredGear, worn: ToothProfiles, wear: Wear) -> tuple[Sol
     if measured.planar:
         return None, None
     triangles = gear_triangles(worn)
-    bodies = worn_bodies(gear_triangles(nominal_like(worn)), triangles, wear.least_seen)
+    bodies = worn_volume(worn, wear.least_seen)
     boolean = None
     if len(measured.scans) == 1:
         boolean = _plain_boolean(measured.scans, measured.pose, measured.gear, measured.cells.grid)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -110,15 +110,8 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     outline = outlines(profiles)
     slices, around = outline.shape[:2]
     vertices = np.concatenate([outline, np.broadcast_to(profiles.z[:, None, None], (slices, around, 1))], axis=2).reshape(-1, 3)
-    ring = np.arange(around)
-    after = np.roll(ring, -1)
     groove = _below_groove(profiles)
-    base = (np.delete(np.arange(slices - 1), groove) * around)[:, None]
-    lower, lower_next = base + ring, base + after
-    walls = np.stack([
-        np.stack([lower, lower_next, lower_next + around], axis=-1),
-        np.stack([lower, lower_next + around, lower + around], axis=-1),
-    ]).reshape(-1, 3)  # fmt: skip
+    walls = _walls(around, np.delete(np.arange(slices - 1), groove))
     cap = _cap(profiles, around)
     top_shift = (slices - 1) * around
     centre = len(vertices)
@@ -132,6 +125,17 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     neck = _neck(profiles, cap, outline, int(groove[0]), centre + 2)
     faces = np.vstack([walls, low, high, neck.faces])
     return Triangles(np.vstack([vertices, hub, neck.vertices]), faces.astype(np.int64))
+
+
+def _walls(around: int, slices: Ints) -> Ints:
+    """Triangles between outlines of so many points: those of `slices` and of the next, (n, 3)."""
+    ring = np.arange(around)
+    base = (slices * around)[:, None]
+    lower, lower_next = base + ring, base + np.roll(ring, -1)
+    return np.stack([
+        np.stack([lower, lower_next, lower_next + around], axis=-1),
+        np.stack([lower, lower_next + around, lower + around], axis=-1),
+    ]).reshape(-1, 3)  # fmt: skip
 
 
 def _below_groove(profiles: ToothProfiles) -> Ints:
@@ -248,27 +252,62 @@ def _cap(profiles: ToothProfiles, around: int) -> Ints:
     A tooth is a ladder between equal radii of its two sides (any wear leaves it one), the body a fan from the hub over the root
     circle: both stay free of overlaps whatever was worn off.
     """
-    nodes = len(profiles.radius)
+    nodes, tip = len(profiles.radius), 2 * TIP_STEPS - 1
     per = around // profiles.gear.teeth
-    tip = 2 * TIP_STEPS - 1
-    k = np.arange(nodes - 1)
+    root = np.array([0, *range(2 * nodes + tip - 1, per), per])  # right root, left root, land, next tooth's right root
+    hub = np.column_stack([np.full(len(root) - 1, -1), root[:-1], root[1:]])
+    tooth = np.vstack([_tooth_cap(nodes), hub])
+    teeth = np.arange(profiles.gear.teeth)[:, None, None] * per
+    every = np.where(tooth < 0, -1, np.mod(tooth + teeth, around))
+    return np.asarray(every.reshape(-1, 3), dtype=np.int64)
+
+
+def _tooth_cap(nodes: int) -> Ints:
+    """Triangles of the end of a tooth above its root circle as indices into its outline, counter-clockwise from +z."""
+    tip, k = 2 * TIP_STEPS - 1, np.arange(nodes - 1)
     right, right_up = k, k + 1
     left = 2 * nodes + tip - 1 - k
     left_up = left - 1
     ladder = np.vstack([np.column_stack([right, right_up, left_up]), np.column_stack([right, left_up, left])])
     top = np.arange(nodes - 1, nodes + tip + 1)  # right tip corner … left tip corner
     fan = np.column_stack([np.full(len(top) - 2, top[-1]), top[:-2], top[1:-1]])
-    root = np.array([0, *range(2 * nodes + tip - 1, per), per])  # right root, left root, land, next tooth's right root
-    hub = np.column_stack([np.full(len(root) - 1, -1), root[:-1], root[1:]])
-    tooth = np.vstack([ladder, fan, hub])
-    teeth = np.arange(profiles.gear.teeth)[:, None, None] * per
-    every = np.where(tooth < 0, -1, np.mod(tooth + teeth, around))
-    return np.asarray(every.reshape(-1, 3), dtype=np.int64)
+    return np.vstack([ladder, fan])
+
+
+def _turned(xy: Floats, angle: float) -> Floats:
+    """Points (…, 2) turned about the axis, counter-clockwise (rad)."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.asarray(xy @ np.array([[cos, sin], [-sin, cos]]))
 
 
 def nominal_like(profiles: ToothProfiles) -> ToothProfiles:
     """The nominal gear on the same nodes."""
     return nominal_profiles(profiles.gear, profiles.radius, profiles.z)
+
+
+def tooth_triangles(profiles: ToothProfiles, tooth: int) -> Triangles:
+    """Watertight triangles of one external tooth, cut off straight from root to root."""
+    one = replace(profiles, half_angle=profiles.half_angle[tooth : tooth + 1])
+    outline = _turned(outlines(one)[:, : 2 * len(profiles.radius) + 2 * TIP_STEPS - 1], tooth * profiles.gear.pitch_angle)
+    slices, around = outline.shape[:2]
+    vertices = np.concatenate([outline, np.broadcast_to(profiles.z[:, None, None], (slices, around, 1))], axis=2).reshape(-1, 3)
+    cap = _tooth_cap(len(profiles.radius))
+    walls = _walls(around, np.arange(slices - 1))
+    return Triangles(vertices, np.vstack([walls, cap[:, ::-1], cap + (slices - 1) * around]).astype(np.int64))
+
+
+def worn_volume(worn: ToothProfiles, seen: tuple[float, float] = (0.0, 0.0)) -> list[Triangles]:
+    """Nominal minus worn gear; as `worn_bodies`, tooth by tooth where what is missing hangs together over no bottom land: a tooth's triangles take a
+    small part of the room of a gear's."""
+    nominal = nominal_like(worn)
+    apart = not worn.gear.spec.internal and worn.gear.spec.gap == 0.0
+    if not apart or (worn.half_angle[..., 0] != nominal.half_angle[..., 0]).any():
+        return worn_bodies(gear_triangles(nominal), gear_triangles(worn), seen)
+    teeth = np.flatnonzero((worn.half_angle != nominal.half_angle).any(axis=(1, 2, 3))).tolist()
+    bodies = [
+        body for tooth in teeth for body in worn_bodies(tooth_triangles(nominal, tooth), tooth_triangles(worn, tooth), seen)
+    ]
+    return sorted(bodies, key=lambda body: -body.volume)
 
 
 def worn_bodies(nominal: Triangles, worn: Triangles, seen: tuple[float, float] = (0.0, 0.0)) -> list[Triangles]:

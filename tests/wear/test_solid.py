@@ -1,5 +1,7 @@
 """The worn solid: closed, of the volume that was integrated, and what comes back from its files."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -12,7 +14,18 @@ from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import smooth_surface
-from gearwear.wear.solid import ROOT_STEPS, TIP_STEPS, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
+from gearwear.wear.solid import (
+    ROOT_STEPS,
+    TIP_STEPS,
+    Triangles,
+    gear_triangles,
+    nominal_like,
+    outlines,
+    signed_difference,
+    tooth_triangles,
+    worn_bodies,
+    worn_volume,
+)  # fmt: skip
 from tests.placing.placing import binned, designed, refined
 from tests.synthetic import AbrasiveWear, Patch, Recipe, SyntheticScan, make_scan
 
@@ -36,6 +49,7 @@ class Solid:
         self.wear: Wear = find_wear(cells, registration.noise, sides_of(registration.datum.worn_side))
         surface = smooth_surface(self.wear, cells.grid, registration.noise)
         profiles = worn_profiles(ProfileNodes.of(cells.grid), without_added_metal(surface.depth, self.wear.side_maps.area))
+        self.profiles = profiles
         self.worn = gear_triangles(profiles)
         self.nominal = gear_triangles(nominal_like(profiles))
         self.bodies = worn_bodies(self.nominal, self.worn, self.wear.least_seen)
@@ -76,6 +90,42 @@ def test_a_body_for_each_worn_flank_of_the_volume_integrated(solid):
         assert body.volume == pytest.approx(region.volume, rel=0.01)
         middle = np.angle(np.mean(body.vertices[:, 0]) + 1j * np.mean(body.vertices[:, 1]))
         assert round(middle / GEAR.pitch_angle) % 12 == region.tooth
+
+
+def test_tooth_by_tooth_it_is_the_boolean_of_the_whole_gears(solid):
+    """The same bodies: volumes, areas and centres."""
+    by_tooth = worn_volume(solid.profiles, solid.wear.least_seen)
+    assert len(by_tooth) == len(solid.bodies)
+    for one, whole in zip(by_tooth, solid.bodies, strict=True):
+        assert_closed(one)
+        assert one.volume == pytest.approx(whole.volume, rel=1e-9)
+        assert one.area == pytest.approx(whole.area, rel=1e-9)
+        np.testing.assert_allclose(one.vertices.mean(axis=0), whole.vertices.mean(axis=0), atol=0.05)
+        np.testing.assert_allclose(np.sort(one.vertices.max(axis=0)), np.sort(whole.vertices.max(axis=0)), atol=1e-9)
+
+
+def test_a_tooth_and_what_is_below_it_are_the_gear(solid):
+    """Teeth cut off straight, and the body that is left: a prism of which only corners at the roots are known."""
+    teeth = [tooth_triangles(solid.profiles, tooth) for tooth in range(12)]
+    outline = outlines(solid.profiles)[0].reshape(12, -1, 2)
+    nodes = len(solid.profiles.radius)
+    corners = np.concatenate([outline[:, :1], outline[:, 2 * nodes + 2 * TIP_STEPS - 2 :]], axis=1).reshape(-1, 2)
+    x, y = corners.T
+    below = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))) * GEAR.face_width
+    assert sum(tooth.volume for tooth in teeth) + below == pytest.approx(solid.worn.volume, rel=1e-9)
+    for tooth in teeth:
+        assert_closed(tooth)
+
+
+def test_what_is_missing_down_to_a_bottom_land_is_taken_from_the_whole_gear(solid):
+    """Two flanks worn down to the land between them: cut off from root to root, their teeth would not end where they did."""
+    half_angle = solid.profiles.half_angle.copy()
+    half_angle[...] = nominal_like(solid.profiles).half_angle
+    half_angle[4, 0] -= 0.01
+    half_angle[5, 1] -= 0.01
+    worn = replace(solid.profiles, half_angle=half_angle)
+    lost = sum(body.volume for body in worn_volume(worn))
+    assert lost == pytest.approx(gear_triangles(nominal_like(worn)).volume - gear_triangles(worn).volume, rel=1e-3)
 
 
 def test_the_bodies_are_what_was_taken_away(solid):
