@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwear.comparison.measured_gear import MeasuredGear, measure
+from gearwear.comparison.closing import measure
+from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.files.toml import read_design
 from gearwear.identify.candidates import find_candidates
 from gearwear.inspection import Inspection, Settings, inspect

@@ -21,7 +21,8 @@ import numpy as np
 
 from benchmarks.loop_study.fitting import designed, registered
 from benchmarks.loop_study.scenario import draw
-from gearwear.comparison.measured_gear import MeasuredGear, find_effects, register
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import MeasuredGear, register
 from gearwear.design.files.toml import read_design
 from gearwear.diagnose.rules import RULES, Rules, in_force
 from gearwear.scan.reading import read_scan

@@ -18,7 +18,7 @@ from scipy.ndimage import zoom
 
 from gearwear.arrays import Floats
 from gearwear.commands.inputs import bundled_example
-from gearwear.comparison.measured_gear import measure
+from gearwear.comparison.closing import measure
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
 from gearwear.design import Gear

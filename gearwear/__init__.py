@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from gearwear.api import read_scan as read_scan
     from gearwear.api import report_arrays as report_arrays
     from gearwear.api import write as write
-    from gearwear.comparison.measured_gear import find_effects as find_effects
+    from gearwear.comparison.closing import find_effects as find_effects
     from gearwear.comparison.measured_gear import register as register
     from gearwear.design.files.toml import read_design as read_design
     from gearwear.design.gear import Gear as Gear
@@ -49,7 +49,7 @@ __version__ = "0.14.0"
 
 _HOME = {
     "Gear": "design.gear", "Design": "design.pair", "GearSpec": "design.spec", "InputError": "errors",
-    "read_design": "design.files.toml", "locate": "design.surface", "register": "comparison.measured_gear", "find_effects": "comparison.measured_gear",
+    "read_design": "design.files.toml", "locate": "design.surface", "register": "comparison.measured_gear", "find_effects": "comparison.closing",
     "mesh_contact": "meshing.contact", "LoadSpec": "design.load", "study_load": "loaded.study", "exact_meshing": "meshing.exact",
     "fit_wear_law": "wear_law.fit", "forecast_wear": "wear_law.forecast", "cycles_left": "wear_law.forecast",
     "shaft_movement": "meshing.shafts", "study_meshing": "meshing.study", "figures": "report",

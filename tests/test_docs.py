@@ -31,6 +31,8 @@ FREE = {"parameters", "rejected"}
 """Keys whose own keys are names from elsewhere: an effect's parameters, reasons to reject a point."""
 
 NUMERICAL = {
+    "HALVES",
+    "PITCHES",
     "ALIKE",
     "BATCH",
     "ENOUGH_CELLS",

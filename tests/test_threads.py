@@ -52,7 +52,7 @@ def test_one_inside_and_what_was_before_outside(two):
 
 
 VERBS = (
-    "comparison.measured_gear.register", "comparison.measured_gear.find_effects", "comparison.stations.compare",
+    "comparison.measured_gear.register", "comparison.closing.find_effects", "comparison.stations.compare",
     "wear.regions.find_wear", "inspection.inspection.inspect", "identify.candidates.find_candidates", "meshing.contact.mesh_contact",
     "meshing.study.study_meshing", "wear_law.fit.fit_wear_law", "wear_law.forecast.forecast_wear", "wear_law.forecast.cycles_left",
     "report.write.write_results",

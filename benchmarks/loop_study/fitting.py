@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 from gearwear.api import as_scan
 from gearwear.arrays import Floats
-from gearwear.comparison.measured_gear import MeasuredGear, find_effects, register
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import MeasuredGear, register
 from gearwear.comparison.open_volume import OpenVolume
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design

@@ -58,7 +58,8 @@ WHOLE = (Size(80, 3.0, 60.0), Size(25, 3.0, 30.0, 780_000))
 LOOP = """
 import json, resource, sys, time
 import numpy as np
-from gearwear.comparison.measured_gear import find_effects, register
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import register
 from gearwear.design import read_design
 from gearwear.scan.types import Scan
 points = np.load(sys.argv[2]).astype(float)

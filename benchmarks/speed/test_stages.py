@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.speed import stages, workload
-from gearwear.comparison.measured_gear import measure
+from gearwear.comparison.closing import measure
 from gearwear.design.files.toml import read_design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.side import Side

@@ -155,7 +155,7 @@ def _run(arguments: Namespace) -> None:
         edition = _edition(arguments)
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
-        from gearwear.comparison.measured_gear import measure
+        from gearwear.comparison.closing import measure
         from gearwear.inspection.halves import half_gear, inspect_half
         from gearwear.placing.refusal import seen_radii
         from gearwear.report.files.inspection import dimension_lines, inspection_record, lines, worst_tooth, write_inspection

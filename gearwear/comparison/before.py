@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwear.comparison.measured_gear import MeasuredGear, find_effects, laid, register
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import MeasuredGear, laid, register
 from gearwear.comparison.same_teeth import SameTeeth, same_teeth
 from gearwear.design.pair import Design
 from gearwear.design.side import Side

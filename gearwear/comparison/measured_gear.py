@@ -13,9 +13,9 @@ from gearwear.arrays import Bools, Floats
 from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.collecting import Cut
 from gearwear.comparison.own_root import no_datum, on_its_root
-from gearwear.comparison.passes import Streamed, first_pass, grid_of_sample, last_pass, moved, relocated_pass
-from gearwear.comparison.placed_notes import beside_views, doubts_of, sample_note, smoothing_of
-from gearwear.comparison.relocated import LEAST_NOISE, FinalMotion, Relocation, clip_of, is_far, with_pits
+from gearwear.comparison.passes import Streamed, first_pass
+from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
+from gearwear.comparison.relocated import LEAST_NOISE, clip_of, with_pits
 from gearwear.comparison.stated import at_20_degrees, check_streamed, tooth_1_of, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
 from gearwear.design.card import Card, CardRow
@@ -25,9 +25,8 @@ from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints
 from gearwear.design.twist import Toothing, drawn_height, refuse
 from gearwear.diagnose.effects.base import MADE, MEASURED, Context, Kind
-from gearwear.diagnose.loop import Loop, close_loop, make_context
-from gearwear.diagnose.pooled import carried, left_out, loop_grid, rough_grid
-from gearwear.placing.cells import CellGrid, Cells, bin_points
+from gearwear.diagnose.loop import Loop, make_context
+from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose
 from gearwear.placing.registration import below_tips
@@ -35,7 +34,6 @@ from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.strays import near_centre
 from gearwear.placing.views import PlacedScan, place, turned
-from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import (
@@ -55,8 +53,6 @@ Progress = Callable[[str], None]
 
 LEAST_BROKEN_STDS = 3.0
 """Standard deviations that a piece must be large to be called broken off."""
-
-Look = tuple[Loop, Cells]  # a loop, and the cells it was closed on
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,7 +248,7 @@ class MeasuredGear(Card):
     def flanks(self) -> SurfacePoints:
         """The points on flanks, without what measurement added and without strays."""
         flank = self._without_strays(self.located)
-        return flank.with_deviation(self._straightened(flank))
+        return flank.with_deviation(self.straightened(flank))
 
     @property
     def raw_flanks(self) -> SurfacePoints:
@@ -269,7 +265,7 @@ class MeasuredGear(Card):
         """Sums over the points of sections, without what measurement added and without strays."""
         if self.final.sections is not None:
             return self.final.sections
-        cut, points = Cut(self.section_band, self._straightened), self._without_strays(self.located)
+        cut, points = Cut(self.section_band, self.straightened), self._without_strays(self.located)
         return cut.of(points.take(cut.holds(points)))
 
     @property
@@ -277,7 +273,7 @@ class MeasuredGear(Card):
         """The same as registration placed the points: what measurement added is in them."""
         return SectionSums.of(self.raw_flanks, self.section_band) if self.streamed is None else self.streamed.first.sections
 
-    def _straightened(self, points: SurfacePoints) -> Floats:
+    def straightened(self, points: SurfacePoints) -> Floats:
         """Deviations without what measurement added, mm."""
         return points.deviation if self.loop is None else points.deviation - self.loop.deviation(points, MEASURED)
 
@@ -313,54 +309,6 @@ class MeasuredGear(Card):
         if self.loop is not None:
             amount[seen] = self.loop.deviation(self.cells.points.take(seen), kinds)
         return amount
-
-
-def measure(
-    design: Design,
-    files: Sequence[str | Path],
-    part: str | None = None,
-    units: str = "mm",
-    loop: bool = True,
-    progress: Progress = lambda station: None,
-    stream: bool | None = False,
-) -> MeasuredGear:
-    """Read scans, put them on the design, and find what else than wear they show.
-
-    Parameters
-    ----------
-    design : Design
-        One gear or a pair.
-    files : sequence of path
-        One scan, or several views of one gear.
-    part : {"pinion", "gear"} or None
-        Which one was scanned; None: the one whose size fits.
-    units : str
-        Unit of the scans.
-    loop : bool
-        Whether to look for effects beyond registration.
-    progress : callable
-        Told each station.
-    stream : bool or None
-        Whether only a sample of the points is held in memory; None: where there are many.
-
-    Returns
-    -------
-    MeasuredGear
-
-    Raises
-    ------
-    InputError
-        If a file or a value is wrong, or the scan is of something else.
-    """
-    check_part(design, part)
-    progress("reading")
-    scans = read_scan(files, units, stream)
-    progress("registration")
-    measured = register(design, scans, part)
-    if not loop:
-        return measured
-    progress("closing the loop")
-    return find_effects(measured)
 
 
 @on_one_thread
@@ -467,88 +415,6 @@ def _in_cells(
         design=design, scans=scans, part=name, root=root, placed=placed, context=context, first=first, loop=None, final=final,
         broken=broken, fracture_points=int(border.sum()) if streamed is None else streamed.fracture_points, streamed=streamed,
     )  # fmt: skip
-
-
-@on_one_thread
-def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) -> MeasuredGear:
-    """Close the loop: find what scanner, mounting and maker added.
-
-    Parameters
-    ----------
-    measured : MeasuredGear
-        As `register` gives it; what is returned has its `loop`, and the points located again where the loop moved them.
-    worn : frozenset of Side or None
-        Sides that are known to be worn throughout; None: the scan decides.
-    """
-    gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
-    noise, grid, root_free = measured.noise, first.grid, not measured.root.fits_design
-
-    def closed_on(
-        coarse: CellGrid,
-        cells: Cells,
-        located: SurfacePoints,
-        rest: SurfacePoints | None,
-        look: Look | None,
-        begun: Loop | None = None,
-    ) -> Look:
-        """The loop closed on the cells of a coarser grid, and these."""
-        if measured.streamed is not None:
-            pooled = cells.pooled(coarse)
-        else:
-            pooled = bin_points(located, coarse, clip=clip_of(located) if rest is None else None)
-            if rest is not None:
-                pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
-        edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(pooled.fillet_edges.tolist()))
-        out = None if look is None else left_out(*look, pooled)
-        return close_loop(pooled, noise, edges, root_free=root_free, worn=worn, out=out, begun=begun), pooled
-
-    def explained(
-        cells: Cells,
-        located: SurfacePoints,
-        rest: SurfacePoints | None = None,
-        look: Look | None = None,
-        begun: Loop | None = None,
-    ) -> Loop:
-        """The loop closed on as many cells as it needs."""
-        coarse = loop_grid(grid)
-        if coarse is grid:
-            return close_loop(cells, noise, context, root_free=root_free, worn=worn, begun=begun)
-        return carried(*closed_on(coarse, cells, located, rest, look, begun), cells, noise)
-
-    rough = rough_grid(grid)
-    far, look, again = False, None, None
-    if rough is not None:  # few cells tell as well whether the scan must be located again, and by what
-        look = closed_on(rough, first, placed.located, None, None)
-        far = is_far(*look)
-    likeliest = look[0] if look is not None and far else explained(first, placed.located, look=look)
-    far = far or is_far(likeliest, first)
-    if far:
-        # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
-        sample_grid = grid if measured.streamed is None else grid_of_sample(placed.located, grid)
-        again, located, rest = Relocation.of(placed, likeliest, sample_grid)
-        if measured.streamed is None:
-            # What goes up and down within a cell because the effects do is no scatter.
-            first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
-        else:
-            measured = replace(measured, streamed=(streamed := relocated_pass(measured.streamed, again)))
-            first = streamed.first.cells
-        placed = replace(placed, located=located)
-        likeliest = explained(first, located, rest, begun=likeliest)
-
-    def closed(loop: Loop, decided: bool) -> MeasuredGear:
-        """With a loop; of the points of a streamed scan in all cells only where it is the one decided for, else these are moved along."""
-        motion, located = FinalMotion.of(placed, loop, gear, again)
-        result = replace(measured, placed=placed, first=first, loop=beside_views(loop, placed, first, noise))
-        if measured.streamed is None:
-            return replace(result, final=FinalPlace(located, motion.pose, with_pits(located, grid)))
-        cells = moved(first, -loop.motion)
-        final = FinalPlace(located, motion.pose, cells)
-        if decided:
-            last = last_pass(measured.streamed, cells, motion, clip_of(located), noise, result._straightened)
-            final = replace(final, cells=last.cells, sections=last.sections)
-        return replace(result, final=final)
-
-    return replace(closed(likeliest, True), undecided=tuple(closed(other, False) for other in likeliest.others))
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:

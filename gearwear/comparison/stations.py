@@ -13,9 +13,10 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
+from gearwear.comparison.closing import measure
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import PutBack, put_back, side_fields
-from gearwear.comparison.measured_gear import MeasuredGear, Progress, measure
+from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.comparison.open_volume import even_loss
 from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.same_teeth import kept_patterns

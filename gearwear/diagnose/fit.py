@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.special import stdtrit
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FILLET, FLANK, ROOT, TIP
@@ -23,6 +25,9 @@ from gearwear.placing.cells import Cells
 from gearwear.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
+
+HALVES = 5
+"""Pairs of halves that are compared."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +177,7 @@ class Fit:
     def uneven(self, model: Model, amplitudes: Floats, index: int) -> float:
         """How differently two halves of the gear show an effect of the model: greatest difference of their relative size
         between low and high z, left and right flanks, lower and upper profile, opposite halves round the gear; 0 where no difference is
-        beyond `errors` standard deviations.
+        beyond `errors` standard deviations, and beyond what teeth differ in it, by Student's t, corrected for all that is asked.
 
         A right effect has one size everywhere. A piece of something else that it stands in for has not.
         """
@@ -183,7 +188,8 @@ class Fit:
         height, roll = points.position[:, 2], np.nan_to_num(points.roll)
         teeth, flank = points.surface <= TIP, points.surface == FLANK
         middle = 0.5 * (gear.form_roll + gear.tip_roll)
-        greatest = 0.0
+        greatest, number = 0.0, len(np.unique(points.tooth[self.use & teeth]))
+        asked = float(stdtrit(max(number - 1, 1), 1.0 - 0.5 * rules().significance / (HALVES * max(len(model), 1))))
         for one, other in (
             (teeth & (height < 0.5 * gear.face_width), teeth & (height >= 0.5 * gear.face_width)),
             (points.side > 0, points.side < 0),
@@ -200,7 +206,10 @@ class Fit:
             if 1.0 / max(float(inverse[-1, -1]), 1e-300) < rules().free_share * alone:
                 continue
             spread = sandwich(every, self.use, self.covariance, inverse)
-            if abs(size[-1]) > rules().errors * np.sqrt(max(float(spread[-1, -1]), 0.0)):
+            of_cells = self.weight * (self.target - every @ size) * (every @ inverse[-1])
+            of_teeth = np.bincount(points.tooth, np.where(teeth, of_cells, 0.0))
+            by_tooth = math.sqrt(number / max(number - 1, 1) * float(of_teeth @ of_teeth))
+            if abs(size[-1]) > max(rules().errors * math.sqrt(max(float(spread[-1, -1]), 0.0)), asked * by_tooth):
                 greatest = max(greatest, abs(float(size[-1])))
         return greatest
 

@@ -274,6 +274,13 @@ class Rules:
         "share of the farthest way from the pitch point from which on a loss tells the load",
         off=1.0,
     )
+    ground_class: int = rule(
+        5,
+        "class",
+        "literature: usual of ground gears (ISO 1328-1)",
+        "flank class whose f_fα a place may lack of that all the same",
+        off=12,
+    )
     proud: float = rule(
         0.5,
         "1",

@@ -40,8 +40,6 @@ from gearwear.placing.edges import rounded_ends
 from gearwear.processors import each
 
 NO_SIDE: frozenset[Side] = frozenset()
-GROUND = 5
-"""Flank class of ground gears: no flank has less form, as far as it can be told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,7 +271,9 @@ class _Scan:
         lost = -np.bincount(column, loss[rows], len(middle)) / np.maximum(number, 1)
         seen, gear = number > 0, self.fit.cells.grid.gear
         return as_slid(
-            lost[seen], middle[seen] - self.problem.context.pitch_roll, profile_form_tolerance(gear.normal_module, GROUND)
+            lost[seen],
+            middle[seen] - self.problem.context.pitch_roll,
+            profile_form_tolerance(gear.normal_module, rules().ground_class),
         )
 
     def losses(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[_Loss]:

@@ -69,7 +69,7 @@ def lay_flat(cells: Cells, noise: float, loop: Loop | None, worn: frozenset[Side
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class StandingOut:
     """Cells that stand out, before it is asked whether what they lack is more than chance.
 
     Parameters
@@ -109,7 +109,7 @@ class Places:
     around: int
 
 
-def standing_out(laid: LaidFlat, noise: float, loop: Loop | None, worn: frozenset[Side], gone: Bools) -> Places:
+def standing_out(laid: LaidFlat, noise: float, loop: Loop | None, worn: frozenset[Side], gone: Bools) -> StandingOut:
     """The cells that stand out; arguments as those of `regions.find_wear`."""
     cells, sheets, filled = laid.cells, laid.sheets, laid.filled
     gear, grid = cells.grid.gear, cells.grid
@@ -136,7 +136,7 @@ def standing_out(laid: LaidFlat, noise: float, loop: Loop | None, worn: frozense
     allowed = on_gear & known
     mask &= allowed
     around = max(1, round(RIM * gear.transverse_module / grid.size))
-    return Places(
+    return StandingOut(
         mask=mask, wide=rim(mask, around) & allowed, allowed=allowed, at_ends=at_ends, edges=edges,
         edge_depth=-float(filled[at_ends].min(initial=0.0)), pitted=np.asarray(pits.any(axis=(2, 3))), by_level=by_level, whole=whole,
         beyond=beyond, spread=spread, limit=limit, around=around,

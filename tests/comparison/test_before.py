@@ -10,7 +10,7 @@ import pytest
 
 from gearwear.comparison import before as before_wear
 from gearwear.comparison.before import told_by_both, unworn_gear
-from gearwear.comparison.measured_gear import measure
+from gearwear.comparison.closing import measure
 from gearwear.comparison.stations import compare
 from gearwear.design.side import Side
 from tests.commands.doors import ALONE, scan_file

@@ -7,7 +7,8 @@ import pytest
 
 from gearwear import api, as_scan
 from gearwear.comparison.bore import bore_axis, flanks_about_bore
-from gearwear.comparison.measured_gear import find_effects, register
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import register
 from gearwear.design.files.toml import parse_design
 from gearwear.design.pair import Design
 from gearwear.errors import InputError

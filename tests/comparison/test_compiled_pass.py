@@ -11,8 +11,8 @@ import pytest
 
 from gearwear import compiled
 from gearwear.arrays import Floats
+from gearwear.comparison.closing import measure
 from gearwear.comparison.collecting import Collection, Cut, collected
-from gearwear.comparison.measured_gear import measure
 from gearwear.comparison.on_design import OnDesign
 from gearwear.comparison.passes import PassLimits, grid_of_sample
 from gearwear.design.files.toml import read_design

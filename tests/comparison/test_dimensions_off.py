@@ -11,7 +11,7 @@ import pytest
 import gearwear as gw
 from benchmarks.families.families import case
 from benchmarks.families.files import write_case
-from gearwear.comparison.measured_gear import measure
+from gearwear.comparison.closing import measure
 from gearwear.design import read_design
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.loop import close_loop, make_context

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 import gearwear as gw
-from gearwear.comparison.measured_gear import MeasuredGear, measure
+from gearwear.comparison.closing import measure
+from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design import parse_design
 from gearwear.design.side import Side
 from gearwear.errors import InputError

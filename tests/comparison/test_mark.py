@@ -10,7 +10,8 @@ import pytest
 
 from gearwear.api import as_scan
 from gearwear.comparison.before import unworn_gear
-from gearwear.comparison.measured_gear import measure, register
+from gearwear.comparison.closing import measure
+from gearwear.comparison.measured_gear import register
 from gearwear.comparison.stations import compare
 from gearwear.design import parse_design
 from gearwear.errors import InputError

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearwear.comparison.measured_gear import measure
+from gearwear.comparison.closing import measure
 from gearwear.design.files.toml import read_design
 
 ROOT = Path(__file__).parents[2]

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from gearwear.api import as_scan
-from gearwear.comparison.measured_gear import find_effects, register
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import register
 from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK, OTHER, locate
 from gearwear.placing.registration import below_tips

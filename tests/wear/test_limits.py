@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import binom
 
 from benchmarks.loop_study.fitting import registered
-from gearwear.comparison.measured_gear import find_effects
+from gearwear.comparison.closing import find_effects
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.placing.cells import CellGrid, bin_points, noise

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gearwear.comparison.measured_gear import MeasuredGear, find_effects, register
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import MeasuredGear, register
 from gearwear.design import Design, Gear, GearSpec
 from gearwear.diagnose import pooled
 from gearwear.diagnose.masks import sound_cells
