@@ -12,7 +12,7 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, judge, with_levels
 from gearwear.diagnose.masks import folds
-from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
+from gearwear.diagnose.pattern import Pattern, find_patterns, joined, order_share
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 
@@ -75,7 +75,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
                 continue
             worst = _most_uneven(whole, problem, model)
         if worst is None:
-            patterns = known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise)
+            patterns = joined(fit.cells.grid, known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise))
             # What the whole model leaves: an effect that is dropped as a piece of that makes it larger, which speaks against no other.
             pieces_of = patterns if pieces_of is None else pieces_of
             worst = _makeshift(fit, problem, model, evidence, kept, pieces_of)

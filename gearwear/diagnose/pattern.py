@@ -52,6 +52,15 @@ class Pattern:
     p_value: float
     field: Floats
 
+    @classmethod
+    def of(cls, grid: CellGrid, field: Floats, order: int, p_value: float) -> Pattern:
+        """A field (m,) mm of some order, described."""
+        own = grid.sides(field)
+        flanks = own[..., grid.fillet :]  # fillets are alike where one side of flanks was left out
+        rms, peak = float(np.sqrt(np.mean(own**2))), float(np.abs(own).max())
+        parity = _parity(flanks if flanks.any() else own)
+        return cls(order, parity, _waves(own, axis=2), _waves(own, axis=3), rms, peak, p_value, field)
+
     def is_form(self, noise: float) -> bool:
         """Whether it is a form that all teeth have, larger than the scatter of points."""
         return self.order == 0 and self.rms > noise
@@ -94,6 +103,16 @@ def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) ->
     return tuple(found)
 
 
+def joined(grid: CellGrid, patterns: tuple[Pattern, ...]) -> tuple[Pattern, ...]:
+    """Those of one order as one: what was found in two steps is one structure."""
+    together = []
+    for order in dict.fromkeys(pattern.order for pattern in patterns):
+        same = [pattern for pattern in patterns if pattern.order == order]
+        field = np.sum([pattern.field for pattern in same], axis=0)
+        together.append(same[0] if len(same) == 1 else Pattern.of(grid, field, order, min(one.p_value for one in same)))
+    return tuple(together)
+
+
 def order_share(grid: CellGrid, field: Floats, order: int) -> float:
     """Share of a field's mean square on the tooth sides that belongs to one order round the gear, 0 … 1."""
     sides = grid.sides(field)
@@ -128,22 +147,9 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
             continue
         width = max(sure)[1]  # the smoothest is the surest, and may have smoothed a fine wave away
         field = _field(grid, value, order, width)
-        own = grid.sides(field)
-        rms = float(np.sqrt(np.mean(own**2)))
-        if rms < rules().least_share * noise:
+        if float(np.sqrt(np.mean(grid.sides(field) ** 2))) < rules().least_share * noise:
             continue
-        waves_z, waves_profile = _waves(own, axis=2), _waves(own, axis=3)
-        flanks = own[..., grid.fillet :]  # fillets are alike where one side of flanks was left out
-        return Pattern(
-            order,
-            _parity(flanks if flanks.any() else own),
-            waves_z,
-            waves_profile,
-            rms,
-            float(np.abs(own).max()),
-            float(p_values[order]),
-            field,
-        )
+        return Pattern.of(grid, field, order, float(p_values[order]))
     return None
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gearwear.diagnose.pattern import find_patterns, order_share
+from gearwear.diagnose.pattern import Pattern, find_patterns, joined, order_share
 from tests.diagnose.core.toy import TEETH, grid, sides_of
 
 NOISE, COUNT = 0.005, 9.0
@@ -115,3 +115,18 @@ def test_the_share_of_an_order_is_parsevals():
     assert order_share(one, field, 2) == pytest.approx(9.0 / 25.0, rel=1e-3)
     assert order_share(one, field, 5) == pytest.approx(16.0 / 25.0, rel=1e-3)
     assert order_share(one, field, 3) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_what_was_found_of_one_order_in_two_steps_is_one_structure():
+    """Two waves of an order, a sixth of a wave apart, are one wave of √3 of their height; another order stays what it is."""
+    one = grid()
+    at = sides_of(one)
+    first, second = (0.004 * np.cos(2.0 * np.pi * (2.0 * at.tooth / TEETH + shift)) for shift in (0.0, 1.0 / 6.0))
+    other = 0.002 * np.cos(2.0 * np.pi * 5.0 * at.tooth / TEETH)
+    parts = [(first, 2, 1e-9), (other, 5, 1e-5), (second, 2, 1e-12)]
+    whole = joined(one, tuple(Pattern.of(one, one.on_cells(field), order, p) for field, order, p in parts))
+    assert [pattern.order for pattern in whole] == [2, 5]
+    assert whole[0].rms == pytest.approx(0.004 * np.sqrt(3.0) / np.sqrt(2.0), rel=1e-9)
+    assert whole[0].p_value == 1e-12
+    assert whole[1].rms == pytest.approx(0.002 / np.sqrt(2.0), rel=1e-9)
+    np.testing.assert_allclose(one.sides(whole[0].field), first + second, atol=1e-15)
