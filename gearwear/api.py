@@ -21,8 +21,9 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.settings import Settings
 from gearwear.meshing.study import PairStudy
 from gearwear.scan.clean import clean
+from gearwear.scan.contents import Contents
 from gearwear.scan.reading import read_scan as read_files
-from gearwear.scan.types import Contents, Scan, ScanKind
+from gearwear.scan.types import Scan, ScanKind
 from gearwear.wear.regions import Wear
 from gearwear.wear.regions import find_wear as find_in_cells
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, Progress, register
-from gearwear.comparison.passes import grid_of_sample, last_pass, moved, relocated_pass
+from gearwear.comparison.pass_limits import grid_of_sample
+from gearwear.comparison.passes import last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import beside_views
 from gearwear.comparison.relocated import FinalMotion, Relocation, clip_of, is_far, with_pits
 from gearwear.comparison.which_gear import check_part

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear import compiled
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.on_design import OnDesign, Places
+from gearwear.comparison.pass_limits import PassLimits
 from gearwear.design.compiled_locate import constants_of
 from gearwear.design.surface import FLANK, OTHER, SurfacePoints
 from gearwear.placing.cells import CellGrid
@@ -22,7 +23,6 @@ from gearwear.placing.sums import CellSums
 from gearwear.wear.section_sums import SectionBand, SectionSums
 
 if TYPE_CHECKING:
-    from gearwear.comparison.passes import PassLimits
     from gearwear.placing.kernel import Sieve
 
 BESIDE = 0.2

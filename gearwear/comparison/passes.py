@@ -13,13 +13,13 @@ from gearwear import compiled
 from gearwear.arrays import Floats
 from gearwear.comparison.collecting import Cut, collected
 from gearwear.comparison.on_design import OnDesign, Places
+from gearwear.comparison.pass_limits import PassLimits
 from gearwear.comparison.relocated import FinalMotion, Relocation
 from gearwear.design.surface import OTHER, SurfacePoints
 from gearwear.placing.cells import CellGrid, Cells, cells_of
-from gearwear.placing.pits import FarReach, Pits, hanging_together
+from gearwear.placing.pits import Pits, hanging_together
 from gearwear.placing.pose import Pose
 from gearwear.placing.registration import Registration, below_tips, refit, tip_shift
-from gearwear.placing.strays import StrayLimits
 from gearwear.placing.sums import CellSums
 from gearwear.placing.views import PlacedScan
 from gearwear.scan.pieces import Chunks
@@ -63,46 +63,6 @@ class Source:
         if self.borders.fractures or not isinstance(put, OnDesign) or not compiled.pays(0):
             return self, put
         return self.chunks, replace(put, motion=self.pose if put.motion is None else self.pose.then(put.motion))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PassLimits:
-    """By what a pass tells strays and pits.
-
-    Parameters
-    ----------
-    grid : CellGrid
-        Cells of the limits: coarser than those of the pass where a sample is too thin for these.
-    limits : StrayLimits
-        How far a point may lie off.
-    reach : FarReach
-        From where on one is counted as far off.
-    pits : Pits or None
-        Points that are no strays however far off; None: not known yet.
-    """
-
-    grid: CellGrid
-    limits: StrayLimits
-    reach: FarReach
-    pits: Pits | None
-
-    @classmethod
-    def of_sample(cls, located: SurfacePoints, grid: CellGrid, clip: float) -> PassLimits:
-        """What a located sample says; `clip` is how far a point may lie from the centre of a level cell, mm."""
-        cell = grid.index(located)
-        reach = FarReach.of(located, cell, grid)
-        pits = hanging_together(reach.tally(located, cell), reach)
-        coarse = grid_of_sample(located, grid)
-        limits = StrayLimits.of(located.deviation, coarse.index(located), coarse, clip)
-        return cls(grid=coarse, limits=limits, reach=reach, pits=pits)
-
-    @classmethod
-    def of_cells(cls, before: Pass, cells: Cells, clip: float, noise: float) -> PassLimits:
-        """What a pass before says, its cells moved to where those of the next will lie."""
-        reach = FarReach.round(cells, noise)
-        return cls(
-            grid=cells.grid, limits=StrayLimits.round(cells, clip), reach=reach, pits=replace(before.pits, centre=reach.centre)
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,12 +123,6 @@ class Streamed:
         return len(self.source.chunks) - self.first.located
 
 
-def grid_of_sample(located: SurfacePoints, grid: CellGrid) -> CellGrid:
-    """The grid for a located sample: that of the whole scan where its cells hold points enough, else a coarser one."""
-    coarser = CellGrid.for_scan(grid.gear, int((located.surface != OTHER).sum()))
-    return coarser if coarser.size > grid.size else grid
-
-
 def go_through(source: Source, put: Places, grid: CellGrid, by: PassLimits, cut: Cut) -> Pass:
     """All points in cells; parameters as `collecting.collected`."""
     with compiled.parts_of(len(source.chunks)):
@@ -211,7 +165,7 @@ def first_pass(
         placed = replace(placed, registration=refitted, located=located)
         if refitted.converged and (number > 0 or by.grid is grid):
             break
-        by = PassLimits.of_cells(first, cells, clip, noise)
+        by = PassLimits.of_cells(first.pits, cells, clip, noise)
     source = replace(source, pose=refitted.pose)
     return placed, Streamed(source, replace(first, cells=cells), refitted)
 
@@ -257,5 +211,5 @@ def last_pass(
     correct : callable
         Deviations of points without what measurement added, mm.
     """
-    by = PassLimits.of_cells(streamed.first, cells, clip, noise)
+    by = PassLimits.of_cells(streamed.first.pits, cells, clip, noise)
     return go_through(streamed.source, motion.put, cells.grid, by, Cut(streamed.first.sections.band, correct))

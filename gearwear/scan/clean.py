@@ -10,8 +10,8 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.errors import InputError
+from gearwear.scan.contents import Contents
 from gearwear.scan.triangles import share_vertices, unit, vertex_normals
-from gearwear.scan.types import Contents
 from gearwear.scan.unique import first_of_each
 
 FARTHEST = 1e9

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.memory import check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import MOST_UNPACKED, check_count, not_installed, short_by
 from gearwear.scan.pieces import PIECE, Pieces
-from gearwear.scan.types import Contents
 
 AXES, INVALID = ("cartesianX", "cartesianY", "cartesianZ"), "cartesianInvalidState"
 

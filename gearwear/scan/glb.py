@@ -13,9 +13,9 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import check_count
 from gearwear.scan.placed import Surface, assemble
-from gearwear.scan.types import Contents
 
 HEAD, CHUNK = 12, 8
 PER_BYTE = 40

@@ -14,9 +14,9 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.errors import InputError
 from gearwear.memory import allowed, check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import MOST_UNPACKED, check_count, not_installed, short_by
 from gearwear.scan.pieces import PIECE, Pieces
-from gearwear.scan.types import Contents
 
 RECORD_HEAD, EXTENDED_RECORD_HEAD, HEADER = 54, 60, 375
 """Least bytes of a variable length record of the header, and of one after the points; bytes of the longest header."""

@@ -9,9 +9,9 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import check_count, parse_numbers, short_by, tokens_per_line
 from gearwear.scan.triangles import check_indices, fan
-from gearwear.scan.types import Contents
 
 VERTEX = re.compile(rb"^[ \t]*v[ \t]+(.*)$", re.MULTILINE)
 FACE = re.compile(rb"^[ \t]*f[ \t]+(.*)$", re.MULTILINE)

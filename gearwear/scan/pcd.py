@@ -9,9 +9,9 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import check_count, parse_numbers, short_by
 from gearwear.scan.pieces import Pieces, numbers_of, rows_of
-from gearwear.scan.types import Contents
 
 TYPES = {"I": "i", "U": "u", "F": "f"}
 MOST_FIELDS = 10_000

@@ -10,8 +10,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.errors import InputError
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import parse_numbers, short_by
-from gearwear.scan.types import Contents
 
 PIECE = 1 << 18
 """Points read at a time: what is worked out of them takes about a hundred megabytes."""

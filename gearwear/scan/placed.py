@@ -10,8 +10,8 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.triangles import check_indices
-from gearwear.scan.types import Contents
 
 MOST_PLACED = 10_000
 """Times that a file may place something; a scan of one part places it once."""

@@ -8,11 +8,11 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import check_count
 from gearwear.scan.pieces import Pieces, numbers_of, rows_of
 from gearwear.scan.ply_values import Element, PlyTable, Property, check_left_over, read_ascii, read_binary
 from gearwear.scan.triangles import check_indices, fan
-from gearwear.scan.types import Contents
 
 TYPES = {
     "char": "i1",

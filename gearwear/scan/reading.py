@@ -18,6 +18,7 @@ import numpy as np
 from gearwear.errors import InputError, NotEnoughMemory, readable
 from gearwear.memory import allowed, check_memory
 from gearwear.scan.clean import clean
+from gearwear.scan.contents import Contents
 from gearwear.scan.e57 import read_e57
 from gearwear.scan.glb import read_glb
 from gearwear.scan.las import read_las
@@ -29,7 +30,7 @@ from gearwear.scan.stl import read_stl
 from gearwear.scan.streaming import streamed
 from gearwear.scan.text import read_text
 from gearwear.scan.threemf import read_3mf
-from gearwear.scan.types import Contents, Scan, ScanKind
+from gearwear.scan.types import Scan, ScanKind
 from gearwear.scan.units import factor
 
 READERS: dict[str, Callable[[bytes], Contents]] = {

@@ -9,8 +9,8 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import check_count, parse_numbers, short_by
-from gearwear.scan.types import Contents
 
 HEAD, RECORD = 84, 50
 LEAST_LINES = 5

@@ -14,13 +14,14 @@ from gearwear.arrays import Bools, Floats
 from gearwear.errors import InputError, readable
 from gearwear.memory import POINT, allowed, check_memory
 from gearwear.scan.clean import FARTHEST, clean
+from gearwear.scan.contents import Contents
 from gearwear.scan.e57 import e57_pieces
 from gearwear.scan.las import las_pieces
 from gearwear.scan.pcd import pcd_pieces
 from gearwear.scan.pieces import PIECE, Chunks, Pieces
 from gearwear.scan.ply import ply_pieces
 from gearwear.scan.text import text_pieces
-from gearwear.scan.types import Contents, Scan
+from gearwear.scan.types import Scan
 from gearwear.scan.unique import first_of_each
 
 IN_PIECES: dict[str, Callable[[Path], Pieces | None]] = {

@@ -18,9 +18,9 @@ from gearwear.arrays import Floats
 from gearwear.design.quantity import plural
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import parse_numbers, short_by, tokens_per_line
 from gearwear.scan.pieces import TEXT_PIECE, Pieces
-from gearwear.scan.types import Contents
 
 BLOCK = 1 << 23
 """Bytes worked on at a time."""

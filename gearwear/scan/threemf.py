@@ -18,9 +18,9 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
+from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import MOST_UNPACKED
 from gearwear.scan.placed import Surface, assemble, check_placed
-from gearwear.scan.types import Contents
 
 UNITS = {"micron": "um", "millimeter": "mm", "centimeter": "cm", "meter": "m", "inch": "in", "foot": "ft"}
 Key = tuple[str, str]

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.card import Card, CardRow
-
-if TYPE_CHECKING:
-    from gearwear.scan.pieces import Chunks
+from gearwear.scan.pieces import Chunks
 
 ScanKind = Literal["cloud", "triangles", "section"]
 """Loose points, a triangulated surface, or one planar section."""
@@ -66,28 +64,3 @@ class Scan(Card):
 
     def rows(self) -> list[CardRow]:
         return [(f"left out: {reason}", f"{count:,}") for reason, count in self.rejected.items() if count]
-
-
-@dataclass(frozen=True, slots=True)
-class Contents:
-    """What a reader found in a file, nothing cleaned, in the file's own unit.
-
-    Parameters
-    ----------
-    points : (n, 3) float
-        As stored.
-    normals : (n, 3) float or None
-        As stored.
-    triangles : (m, 3) int or None
-        Indices into `points`, all of them valid.
-    rejected : dict of str to int
-        Points the file itself marks as no good, left out here.
-    units : str or None
-        The unit, where the format states one.
-    """
-
-    points: Floats
-    normals: Floats | None = None
-    triangles: Ints | None = None
-    rejected: dict[str, int] = field(default_factory=dict)
-    units: str | None = None

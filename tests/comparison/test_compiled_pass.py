@@ -14,7 +14,7 @@ from gearwear.arrays import Floats
 from gearwear.comparison.closing import measure
 from gearwear.comparison.collecting import Collection, Cut, collected
 from gearwear.comparison.on_design import OnDesign
-from gearwear.comparison.passes import PassLimits, grid_of_sample
+from gearwear.comparison.pass_limits import PassLimits, grid_of_sample
 from gearwear.design.files.toml import read_design
 from gearwear.design.gear import Gear
 from gearwear.design.surface import Bands, locate

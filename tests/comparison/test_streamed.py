@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearwear.comparison.passes import PassLimits
+from gearwear.comparison.pass_limits import PassLimits
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
 from gearwear.design.files.toml import read_design

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from gearwear.errors import InputError
 from gearwear.scan import read_one
 from gearwear.scan.clean import clean, outliers
-from gearwear.scan.types import Contents
+from gearwear.scan.contents import Contents
 from gearwear.scan.unique import first_of_each
 from tests.scan.writers import ball, ply, stl, torus, xyz
 from tests.synthetic import Recipe, make_scan
