@@ -241,8 +241,8 @@ def smooth_parts(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
 
 
 def by_tooth(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[Candidate]:
-    """What the maker may have left on each tooth that explains a measurement effect as well: but for what so many parameters explain by chance, no more
-    than `close` is lost. A table that is off turns the flanks within a tooth too, and only that tells it from the gear's own index."""
+    """What the maker may have left on each tooth that explains what a measurement effect does, and all as well: but for what so many parameters explain by
+    chance, no more than `close` is lost. A table that is off turns the flanks within a tooth too, and only that tells it from the gear's own index."""
     own = chosen[index]
     if own.effect.tooth_specific or own.effect.kind is not Kind.MEASUREMENT:
         return []
@@ -254,8 +254,12 @@ def by_tooth(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> lis
     ]
     rest = chosen[:index] + chosen[index + 1 :]
     gain, *gains = problem.gram.gains(problem.columns(rest), [own.columns, *(c.columns for c in others)])
-    lost = [float(gain - one) / problem.unit + len(c.columns) for c, one in zip(others, gains, strict=True)]
-    return [c for c, one in zip(others, lost, strict=True) if one < rules().close and math.isfinite(problem.cost((*rest, c)))]
+    found = []
+    for candidate, one in zip(others, gains, strict=True):
+        lost, instead = float(gain - one) / problem.unit + len(candidate.columns), (*rest, candidate)
+        if lost < rules().close and math.isfinite(problem.cost(instead)) and _takes(problem, instead, own, gain):
+            found.append(candidate)
+    return found
 
 
 def _takes(problem: Problem, model: tuple[Candidate, ...], effect: Candidate, gain: float) -> bool:

@@ -125,17 +125,27 @@ def not_stray(residual: Floats, sound: Bools) -> Bools:
 
 
 def folds(cells: Cells) -> tuple[Ints, Ints]:
-    """Fold of every cell: by teeth (each by itself where they are few, else in groups, which are the same from whichever tooth is the first), and by
-    staggered blocks along z or the profile."""
+    """Fold of every cell: by teeth (each by itself where they are few, else in groups, which are the same from whichever tooth is the first; of very few
+    that were seen pieces along z or the profile), and by staggered blocks that way."""
     teeth = cells.grid.gear.teeth
     wanted = rules().folds_of_teeth
     groups = [number for number in range(min(wanted // 2 or 1, teeth), teeth + 1) if teeth % number == 0]
     by_tooth = cells.points.tooth % min(groups, key=lambda number: (abs(number - wanted), -number))
+    seen = np.unique(by_tooth[cells.seen & (cells.points.surface <= TIP)])
+    if 0 < len(seen) < wanted // 2:
+        # Of three or four teeth nothing could be said: Student's t asks for more than any effect shows.
+        pieces = -(-wanted // len(seen))
+        by_tooth = np.searchsorted(seen, np.clip(by_tooth, seen[0], seen[-1])) * pieces + _stretch(cells, pieces)
+    # Staggered from tooth to tooth: every tooth, and every block of some tooth, is always in what is fitted.
+    block = _stretch(cells, rules().blocks)
+    return by_tooth.astype(np.int64), (block + cells.points.tooth) % rules().blocks
+
+
+def _stretch(cells: Cells, number: int) -> Ints:
+    """Which of so many equal stretches of the face a cell lies in; a planar section has no height: of the profile."""
     position, gear = np.nan_to_num(cells.points.position), cells.grid.gear
     if cells.grid.rows > 1:
         share = position[:, 2] / gear.face_width
-    else:  # a planar section has no height: blocks along the profile
+    else:
         share = (np.hypot(position[:, 0], position[:, 1]) - gear.root_radius) / (gear.tip_radius - gear.root_radius)
-    block = np.clip((share * rules().blocks).astype(np.int64), 0, rules().blocks - 1)
-    # Staggered from tooth to tooth: every tooth, and every block of some tooth, is always in what is fitted.
-    return by_tooth.astype(np.int64), (block + cells.points.tooth) % rules().blocks
+    return np.clip((share * number).astype(np.int64), 0, number - 1)

@@ -188,3 +188,13 @@ def test_an_error_of_the_table_may_be_the_index_unless_flanks_turn_within_a_toot
     ]
     fit = fit_of(grid(), 0.002 * wave + noise(9), blocks, NOISE, COUNT)
     assert alternatives(fit.problem(1.0, None), fit.dictionary.candidates[:1], 0) == told
+
+
+def test_errors_of_the_index_are_no_level_of_all_teeth():
+    """Each tooth has one besides: that explains more than the level does, and not the same."""
+    errors = 0.01 * np.random.default_rng(3).normal(size=12)
+    sense = np.where(AT.left, 1.0, -1.0)
+    teeth = np.where(AT.tooth[..., None] == np.arange(12), sense[..., None], 0.0)
+    blocks = [(Toy("offset", kind=Kind.MEASUREMENT), np.ones_like(U)[..., None]), (Toy("index", tooth_specific=True), teeth)]
+    fit = fit_of(grid(), 0.002 + sense * errors[AT.tooth] + noise(2), blocks, NOISE, COUNT)
+    assert alternatives(fit.problem(1.0, None), fit.dictionary.candidates[:1], 0) == ()

@@ -126,6 +126,19 @@ def test_a_torn_cell_is_a_stray_and_a_common_offset_is_not():
     assert np.flatnonzero(~kept).tolist() == [7]
 
 
+@pytest.mark.parametrize(("teeth", "pieces"), [(1, 12), (4, 3), (5, 3)])
+def test_of_few_teeth_that_were_seen_pieces_are_left_out(teeth, pieces):
+    """Twelve or a few more, as far as there are rows, each a piece of one tooth along z; of three teeth Student's t would ask for more than any effect shows."""
+    one = grid()
+    at, sheets = noisy(one)
+    cells = cells_of(one, sheets, COUNT, NOISE).without(one.on_cells(at.tooth >= teeth))
+    by_tooth = one.sides(folds(cells)[0])[:teeth]
+    np.testing.assert_array_equal(by_tooth // pieces, at.tooth[:teeth])
+    stretch = by_tooth % pieces
+    assert (np.diff(stretch, axis=2) >= 0).all()  # the higher the further
+    assert stretch.max() == pieces - 1 and stretch.min() == 0
+
+
 def test_folds_leave_out_every_tooth_and_every_height_once_and_never_all_of_either():
     one = grid()
     at, sheets = noisy(one)
