@@ -110,8 +110,8 @@ INTRODUCTION = """{scans} scans with effects and {nulls} without (wear, texture,
 with the fit moves the points as the machine tool and the scanner would (`tests/synthetic`); the fit runs the functions of `compare`
 and is told the drawing and nothing else. What a scan is made of is drawn in `benchmarks/loop_study/scenario.py`.
 
-An effect counts as **detectable** by the truth alone (`detection.py`): its field on the cells, less what pose and the scan's other
-effects can take up, against the true noise and texture with their true correlation; found with 95 % power by a test that knew all but the
+An effect counts as **detectable** by the truth alone (`detection.py`): its field on the cells, less what pose, levels that
+the drawing leaves open and the scan's other effects can take up, against the true noise and texture with their true correlation; found with 95 % power by a test that knew all but the
 amplitude, at the loop's own family-wise level, and above the loop's least contribution (0.06 of the point noise). An effect from
 outside must show against every cell of the spectrum, and be 0.1 of the noise.
 

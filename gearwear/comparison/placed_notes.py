@@ -44,9 +44,8 @@ def doubts_of(gear: Gear, drawn: Gear, placed: PlacedScan, noise: float) -> tupl
         said.append(
             f"the teeth of the scan are {gear.face_width:.4g} mm wide, and the design's face_width is {drawn.face_width:g} mm: taken as seen"
         )
-    views = placed.views
-    accords, scatters = [view.accord for view in views], [view.registration.noise for view in views]
-    return (*said, *said_of_views(accords, [view.taken for view in views], placed.told, noise, scatters))
+    taken = [view.taken for view in placed.views]
+    return (*said, *said_of_views(placed.accords, taken, placed.told, noise, placed.scatters))
 
 
 def beside_views(loop: Loop, placed: PlacedScan, cells: Cells, noise: float) -> Loop:
@@ -55,8 +54,7 @@ def beside_views(loop: Loop, placed: PlacedScan, cells: Cells, noise: float) -> 
     Where something is wrong with a view that could not be taken out of it, what was named of the whole scan may be that: what scanner and mounting did,
     levels, and what every tooth has of its own. What was taken out of a view is no better known than the overlaps tell: that is among what is hidden.
     """
-    accords, scatters = [view.accord for view in placed.views], [view.registration.noise for view in placed.views]
-    if doubtful(accords, placed.told, noise, scatters):
+    if doubtful(placed.accords, placed.told, noise, placed.scatters):
         loop = replace(loop, effects=tuple(_or_a_view(effect) for effect in loop.effects))
     if placed.shares is None:
         return loop

@@ -107,6 +107,16 @@ class PlacedScan:
         """(n, 3) the points themselves in the design frame, mm."""
         return self.located.measured
 
+    @property
+    def accords(self) -> list[ViewAccord]:
+        """How each view agrees with the others."""
+        return [view.accord for view in self.views]
+
+    @property
+    def scatters(self) -> list[float]:
+        """Scatter of the points of each view, mm."""
+        return [view.registration.noise for view in self.views]
+
 
 def place(
     views: Sequence[Floats],
