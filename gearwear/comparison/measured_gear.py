@@ -27,6 +27,7 @@ from gearwear.design.twist import Toothing, drawn_height, refuse
 from gearwear.diagnose.effects.base import MADE, MEASURED, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.layers import layers_apart, said_of_layers
 from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose
 from gearwear.placing.registration import below_tips
@@ -189,7 +190,17 @@ class MeasuredGear(Card):
     def doubts(self) -> tuple[str, ...]:
         """Notes without which numbers would be taken for what they are not."""
         placed = doubts_of(self.gear, self.design.gears[self.part], self.placed, self.noise)
-        return (*placed, *broken_sentences(self.broken), *self.placed.registration.notes)
+        return (
+            *placed,
+            *said_of_layers(self.first, self.layered),
+            *broken_sentences(self.broken),
+            *self.placed.registration.notes,
+        )
+
+    @property
+    def layered(self) -> Bools:
+        """Teeth on which views that were put together in one file lie apart, (teeth,)."""
+        return layers_apart(self.first)
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -35,7 +35,7 @@ class OpenVolume:
     @property
     def limits(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; where it may be more than the 95 %
+        which sides are worn throughout, what each answer would be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 %
         interval, wear too faint to be found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all teeth that nothing explains, and teeth thinner than drawn.
         None where nothing does."""
         low = high = self.found.volume
@@ -44,6 +44,11 @@ class OpenVolume:
             low = min(low, *(value - NORMAL_95 * std for value, std in self.undecided))
             high = max(high, *(value + NORMAL_95 * std for value, std in self.undecided))
             causes.append("the scan does not decide which sides are worn throughout")
+        if (layered := self.layered) > 0.0:
+            low = min(low, self.found.volume - layered)
+            causes.append(
+                "views that were put together in one file and lie apart on some teeth: what is missing there may be that"
+            )
         if self.found.hidden_pits > 0.0:
             high += self.found.hidden_pits
             causes.append("pits or grooves on other flanks, too few there to be told from strays")
@@ -72,6 +77,12 @@ class OpenVolume:
             low, high = low - open_, high + open_
             causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
         return (max(low, 0.0), high, "; ".join(causes)) if causes else None
+
+    @property
+    def layered(self) -> float:
+        """What of the volume lies on teeth on which views lie apart, mm³."""
+        apart = self.measured.layered
+        return sum(region.volume for region in self.found.regions if apart[region.tooth])
 
     @property
     def form_or_wear(self) -> float:

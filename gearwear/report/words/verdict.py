@@ -117,11 +117,14 @@ def _open(results: Results) -> bool:
         or results.open_volume.even_or_thin > 0.0
         or results.open_volume.unsure_or_worn > 0.0
     )
-    return bool(results.wear.undecided) or results.open_volume.form_or_wear > 0.0 or even
+    open_ = results.open_volume
+    return bool(results.wear.undecided) or open_.form_or_wear > 0.0 or even or open_.layered > 0.0
 
 
 def _may_be(results: Results) -> str:
     """What the volume may be as well, where the scan does not decide which sides are worn throughout."""
+    if results.open_volume.layered > 0.0:
+        return f"how much of that is views that lie apart the scan does not decide: it may be {_limits(results)}"
     question = "whether flanks are worn throughout or were made so"
     if not results.wear.undecided and results.open_volume.form_or_wear <= 0.0:
         question = "whether the teeth were cut thinner than drawn or are worn evenly"
