@@ -17,7 +17,7 @@ import pytest
 import gearwear as gw
 from benchmarks import sensitivity
 from docs.run_blocks import PAGES, ROOT, Block, Runner, blocks, difference
-from gearwear.comparison import measured_gear, worn_pair
+from gearwear.comparison import closing, worn_pair
 from gearwear.design import parse_design
 from gearwear.design.files.toml import read_design
 from gearwear.diagnose.rules import RULES
@@ -95,7 +95,7 @@ def runner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Runner]:
     """A folder that looks like a fresh clone, with the reader's scan in it. Many pages compare the same two scans: what takes longest of that, the
     loop and the contact with the mate, is done once."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(measured_gear, "close_loop", remembering(measured_gear.close_loop))
+        patch.setattr(closing, "close_loop", remembering(closing.close_loop))
         patch.setattr(worn_pair, "mesh_contact", remembering(worn_pair.mesh_contact))
         yield Runner(tmp_path_factory.mktemp("clone"))
 

@@ -63,8 +63,8 @@ def test_a_scan_far_off_is_located_alike_by_a_rough_look():
         patch.setattr(pooled, "ROUGH_CELLS", FEWER // 2)
         assert rough_grid(measured.first.grid).count < FEWER
         by_few = find_effects(measured)
-        patch.setattr("gearwear.comparison.measured_gear.rough_grid", lambda grid: None)
-        patch.setattr("gearwear.comparison.measured_gear.loop_grid", lambda grid: grid)
+        patch.setattr("gearwear.comparison.closing.rough_grid", lambda grid: None)
+        patch.setattr("gearwear.comparison.closing.loop_grid", lambda grid: grid)
         by_many = find_effects(measured)
     (few,), (many,) = by_few.loop.effects, by_many.loop.effects
     assert few.name == many.name == "turntable_angle"
@@ -88,7 +88,7 @@ def both() -> tuple[MeasuredGear, MeasuredGear]:
     spec = GearSpec("gear", 12, 6.35, 15.0, rack_tip_radius=0.3)
     measured = register(Design({"gear": Gear.from_spec(spec)}), scan)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("gearwear.comparison.measured_gear.loop_grid", lambda grid: grid)
+        patch.setattr("gearwear.comparison.closing.loop_grid", lambda grid: grid)
         whole = find_effects(measured)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pooled, "ENOUGH_CELLS", FEWER)
