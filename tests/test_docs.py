@@ -31,7 +31,6 @@ FREE = {"parameters", "rejected"}
 """Keys whose own keys are names from elsewhere: an effect's parameters, reasons to reject a point."""
 
 NUMERICAL = {
-    "HALVES",
     "PITCHES",
     "ALIKE",
     "BATCH",

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from gearwear.arrays import Bools
 from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, Progress, register
 from gearwear.comparison.pass_limits import grid_of_sample
 from gearwear.comparison.passes import last_pass, moved, relocated_pass
@@ -15,6 +16,7 @@ from gearwear.comparison.which_gear import check_part
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
+from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.loop import Loop, close_loop
 from gearwear.diagnose.pooled import carried, left_out, loop_grid, rough_grid
 from gearwear.placing.cells import CellGrid, Cells, bin_points
@@ -132,17 +134,10 @@ class _Scan:
 
     def explained(self, look: Look | None = None) -> Loop:
         """The loop closed on as many cells as it needs, by what a look at fewer left out."""
-        coarse, measured = loop_grid(self.grid), self.measured
-        if coarse is not self.grid:
-            return carried(*self._closed_on(coarse, look), self.cells, measured.noise)
-        return close_loop(
-            self.cells,
-            measured.noise,
-            measured.context,
-            root_free=not measured.root.fits_design,
-            worn=self.worn,
-            begun=self.begun,
-        )
+        coarse = loop_grid(self.grid)
+        if coarse is self.grid:
+            return self._loop(self.cells, self.measured.context)
+        return carried(*self._closed_on(coarse, look), self.cells, self.measured.noise)
 
     def _closed_on(self, coarse: CellGrid, look: Look | None) -> Look:
         measured = self.measured
@@ -153,11 +148,12 @@ class _Scan:
         else:
             pooled = _with_scatter(self.located, self.rest, coarse)
         context = replace(measured.context, row_height=coarse.row_height, fillet_edges=tuple(pooled.fillet_edges.tolist()))
-        out = None if look is None else left_out(*look, pooled)
-        loop = close_loop(
-            pooled, measured.noise, context, root_free=not measured.root.fits_design, worn=self.worn, out=out, begun=self.begun
-        )
-        return loop, pooled
+        return self._loop(pooled, context, None if look is None else left_out(*look, pooled)), pooled
+
+    def _loop(self, cells: Cells, context: Context, out: Bools | None = None) -> Loop:
+        measured = self.measured
+        free = not measured.root.fits_design
+        return close_loop(cells, measured.noise, context, root_free=free, worn=self.worn, out=out, begun=self.begun)
 
     def located_again(self, loop: Loop) -> tuple[_Scan, Relocation]:
         """The scan without the distortion that a loop found. Bands and feet were set before anything was known of it; now each point can be judged by

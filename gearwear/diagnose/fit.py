@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.special import stdtrit
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FILLET, FLANK, ROOT, TIP
@@ -16,7 +15,7 @@ from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.judge import sandwich
+from gearwear.diagnose.judge import beyond_chance, of_units, sandwich
 from gearwear.diagnose.own_waves import beyond_texture, neighbouring_waves, order_of
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
@@ -25,9 +24,6 @@ from gearwear.placing.cells import Cells
 from gearwear.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
-
-HALVES = 5
-"""Pairs of halves that are compared."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,15 +184,16 @@ class Fit:
         height, roll = points.position[:, 2], np.nan_to_num(points.roll)
         teeth, flank = points.surface <= TIP, points.surface == FLANK
         middle = 0.5 * (gear.form_roll + gear.tip_roll)
-        greatest, number = 0.0, len(np.unique(points.tooth[self.use & teeth]))
-        asked = float(stdtrit(max(number - 1, 1), 1.0 - 0.5 * rules().significance / (HALVES * max(len(model), 1))))
-        for one, other in (
+        halves = (
             (teeth & (height < 0.5 * gear.face_width), teeth & (height >= 0.5 * gear.face_width)),
             (points.side > 0, points.side < 0),
             (flank & (roll < middle), flank & (roll >= middle)),
             (points.position[:, 0] < 0.0, points.position[:, 0] >= 0.0),
             (points.position[:, 1] < 0.0, points.position[:, 1] >= 0.0),
-        ):
+        )
+        greatest, number = 0.0, len(np.unique(points.tooth[self.use & teeth]))
+        asked = beyond_chance(number, 2 * len(halves) * len(model))  # either way
+        for one, other in halves:
             apart = 0.5 * (np.where(one, field, 0.0) - np.where(other, field, 0.0))
             every = np.column_stack([columns, apart])
             gram = self._gram(every)
@@ -207,9 +204,10 @@ class Fit:
                 continue
             spread = sandwich(every, self.use, self.covariance, inverse)
             of_cells = self.weight * (self.target - every @ size) * (every @ inverse[-1])
-            of_teeth = np.bincount(points.tooth, np.where(teeth, of_cells, 0.0))
-            by_tooth = math.sqrt(number / max(number - 1, 1) * float(of_teeth @ of_teeth))
-            if abs(size[-1]) > max(rules().errors * math.sqrt(max(float(spread[-1, -1]), 0.0)), asked * by_tooth):
+            of_teeth: Floats = np.bincount(points.tooth, np.where(teeth, of_cells, 0.0)).astype(np.float64)
+            if abs(size[-1]) > max(
+                rules().errors * math.sqrt(max(float(spread[-1, -1]), 0.0)), asked * of_units(of_teeth, number)
+            ):
                 greatest = max(greatest, abs(float(size[-1])))
         return greatest
 

@@ -105,8 +105,8 @@ def judge(
     freedom = max(number - len(which), 1.0)
     tried = len(problem.dictionary.candidates)
     p_value = min(1.0, tried * float(fdtrc(q, freedom, max(wald / q, 0.0))))
-    left_out = _left_out(folded, np.setdiff1d(np.arange(len(which)), at), np.arange(len(which)))
-    asked = float(stdtrit(left_out.number - 1, 1.0 - min(rules().significance / tried, 0.5)))
+    left_out = _left_out(folded, at)
+    asked = beyond_chance(left_out.number, tried)
     # At half of it the left-out are explained no better with the effect than without.
     holds = left_out.share > max(0.5, asked * left_out.share_error)
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
@@ -132,8 +132,18 @@ class _LeftOut:
     number: int
 
 
-def _left_out(folded: Gram, rest: Ints, every: Ints) -> _LeftOut:
-    """What left-out folds show of the effect that a model, columns `every`, has beyond those of `rest`.
+def beyond_chance(number: int, asked: int) -> float:
+    """Standard errors, told by what so many units differ in, that a mean of theirs exceeds by chance in one of `asked` questions (Student, Bonferroni)."""
+    return float(stdtrit(max(number - 1, 1), 1.0 - min(rules().significance / asked, 0.5)))
+
+
+def of_units(parts: Floats, number: int) -> float:
+    """Standard error of a sum from its parts by so many independent units, of which the expected sum is taken off."""
+    return math.sqrt(number / max(number - 1, 1) * float(parts @ parts))
+
+
+def _left_out(folded: Gram, own: Ints) -> _LeftOut:
+    """What left-out folds show of the effect that has some of the model's columns for its own.
 
     Notes
     -----
@@ -141,21 +151,20 @@ def _left_out(folded: Gram, rest: Ints, every: Ints) -> _LeftOut:
     weighted by f · f is the share shown. Its standard error comes from what the folds differ in s: an effect that is large on some teeth and
     small on others, as a drift is on both hands of its jump, is no worse known for that; of one bad tooth that the rest say nothing of, s is 0.
     """
+    every = np.arange(folded.moment.shape[1])
+    rest = np.setdiff1d(every, own)
     predicted, along = (np.zeros(len(folded.square)) for _ in range(2))
     for fold in range(len(folded.square)):
-        amplitudes = folded.solve(every, without=fold)[0]
-        without = folded.solve(rest, without=fold)[0]
-        information, moment = folded.information[fold], folded.moment[fold]
-        step = np.zeros(len(information))
-        step[every] += amplitudes
+        step, without = folded.solve(every, without=fold)[0], folded.solve(rest, without=fold)[0]
         step[rest] -= without
+        information = folded.information[fold]
         predicted[fold] = step @ information @ step
-        along[fold] = step[every] @ moment[every] - step[every] @ information[np.ix_(every, rest)] @ without
+        along[fold] = step @ (folded.moment[fold] - information[:, rest] @ without)
     seen = folded.weight > 0.0
     predicted, along, weight = predicted[seen], along[seen], folded.weight[seen]
     number, total = len(weight), max(float(predicted.sum()), 1e-300)
     share = float(along.sum()) / total
-    error = math.sqrt(number / max(number - 1, 1) * float(((along - share * predicted) ** 2).sum())) / total
+    error = of_units(along - share * predicted, number) / total
     mean = 1e6 * predicted / weight
     gain = float((1e6 * (2.0 * along - predicted) / weight).mean())
     return _LeftOut(gain, 2.0 * error * float(mean.mean()), share, error, number)

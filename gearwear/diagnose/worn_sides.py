@@ -253,28 +253,29 @@ class _Scan:
                     costs.append(max(lost.cost, unworn) if as_cut else lost.cost)
         return min(costs, default=None)
 
+    def _on_flanks(self, side: Side) -> Ints:
+        """The cells that a fit may use on the flanks of a side."""
+        points = self.fit.cells.points
+        rows: Ints = self.rows[((points.surface == FLANK) & (points.side == int(side)))[self.rows]]
+        return rows
+
     def _form(self, loss: Floats, side: Side) -> float:
         """How far a loss (m,) on the flanks of a side lies off a slope and a lead, peak to peak, mm."""
         points = self.fit.cells.points
-        rows = self.rows[(points.surface == FLANK)[self.rows] & (points.side == int(side))[self.rows]]
+        rows = self._on_flanks(side)
         roll, height = points.roll[rows], points.position[rows, 2]
         plane = np.column_stack([np.ones(len(rows)), roll, height, roll * height])
         return float(np.ptp(loss[rows] - plane @ np.linalg.lstsq(plane, loss[rows])[0]))
 
     def _as_slid(self, loss: Floats, side: Side) -> bool:
         """`as_slid` of a loss (m,) on the flanks of a side."""
-        points, edges = self.fit.cells.points, self.fit.cells.grid.roll_edges
-        rows = self.rows[(points.surface == FLANK)[self.rows] & (points.side == int(side))[self.rows]]
-        middle = 0.5 * (edges[:-1] + edges[1:])
-        column = np.abs(points.roll[rows, None] - middle).argmin(axis=1)
-        number = np.bincount(column, minlength=len(middle))
-        lost = -np.bincount(column, loss[rows], len(middle)) / np.maximum(number, 1)
-        seen, gear = number > 0, self.fit.cells.grid.gear
-        return as_slid(
-            lost[seen],
-            middle[seen] - self.problem.context.pitch_roll,
-            profile_form_tolerance(gear.normal_module, rules().ground_class),
-        )
+        grid, rows = self.fit.cells.grid, self._on_flanks(side)
+        column = grid.flank_column(self.fit.cells.points.roll[rows])
+        number = np.bincount(column, minlength=grid.flank)
+        seen, edges = number > 0, grid.roll_edges
+        lost = -np.bincount(column, loss[rows], grid.flank)[seen] / number[seen]
+        way = 0.5 * (edges[:-1] + edges[1:])[seen] - self.problem.context.pitch_roll
+        return as_slid(lost, way, profile_form_tolerance(grid.gear.normal_module, rules().ground_class))
 
     def losses(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[_Loss]:
         """The losses of some shapes on some sides, each beside the best model; none where what these have in common is none of them.

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK, TIP
+from gearwear.design.surface import TIP
 from gearwear.placing.cells import Cells
 
 LOUD = 2.0
@@ -30,36 +30,38 @@ def layers_apart(cells: Cells) -> Bools:
     cells : Cells
         As first binned: what goes up and down within a cell is in their scatter.
     """
-    teeth, points = cells.grid.gear.teeth, cells.points
-    known = np.where(cells.count >= FEWEST, cells.scatter, np.nan)
-
-    def loud(places: list[Bools]) -> Bools:
-        """On which of some places points scatter so many times as much as on a quiet quarter of them."""
-        typical = np.array([_median(known[at]) for at in places])
-        quiet = float(np.nanquantile(typical, 0.25)) if np.isfinite(typical).any() else np.inf
-        return np.asarray(np.nan_to_num(typical) > LOUD * quiet, dtype=np.bool_)
-
-    on_flank, on_tip = points.surface == FLANK, points.surface == TIP
+    grid, known = cells.grid, _known_scatter(cells)
+    teeth = grid.gear.teeth
+    start, size = grid.blocks[TIP]
     # Each side against its own: one of both may have been ground more finely.
-    sides = [loud([on_flank & (points.tooth == tooth) & (points.side == side) for tooth in range(teeth)]) for side in Side]
-    flanks: Bools = np.logical_or(*sides)
-    tips = loud([on_tip & (points.tooth == tooth) for tooth in range(teeth)])
+    flanks: Bools = np.logical_or(*(_loud(grid.flank_shape(known)[:, side.index].reshape(teeth, -1)) for side in Side))
+    tips = _loud(known[start : start + size].reshape(teeth, -1))
     return flanks if float((flanks & tips).mean()) >= LEAST_SHARE else np.zeros(teeth, dtype=np.bool_)
-
-
-def _median(values: Floats) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if len(known) else np.nan
 
 
 def said_of_layers(cells: Cells, apart: Bools) -> tuple[str, ...]:
     """A sentence where layers lie apart on some teeth, (teeth,)."""
     if not apart.any():
         return ()
-    known = np.where((cells.points.surface == FLANK) & (cells.count >= FEWEST), cells.scatter, np.nan)
-    there = apart[cells.points.tooth]
-    here, elsewhere = (1e3 * _median(known[at]) for at in (there, ~there))
+    flanks = cells.grid.flank_shape(_known_scatter(cells))
+    here = 1e3 * float(np.nanmedian(flanks[apart]))
+    others = "" if apart.all() else f", on the others by {1e3 * float(np.nanmedian(flanks[~apart])):.0f} µm"
     return (
-        f"on {int(apart.sum())} of {len(apart)} teeth points scatter by {here:.0f} µm within a cell, on the others by {elsewhere:.0f} µm: "
+        f"on {int(apart.sum())} of {len(apart)} teeth points scatter by {here:.0f} µm within a cell{others}: "
         "views that do not lie on each other were put together in this scan, and what is missing on those teeth may be that",
     )
+
+
+def _known_scatter(cells: Cells) -> Floats:
+    """Scatter of the cells with points enough, (m,) mm; nan in the others."""
+    return np.where(cells.count >= FEWEST, cells.scatter, np.nan)
+
+
+def _loud(scatter: Floats) -> Bools:
+    """On which teeth points scatter so many times as much as on a quiet quarter of them, by the cells of each, (teeth, n)."""
+    seen = np.isfinite(scatter).any(axis=1)
+    result = np.zeros(len(scatter), dtype=np.bool_)
+    if seen.any():
+        typical = np.nanmedian(scatter[seen], axis=1)
+        result[seen] = typical > LOUD * float(np.quantile(typical, 0.25))
+    return result

@@ -245,7 +245,7 @@ def find_wear(
     sure = (volumes.certainty > least) | (on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE))
     stds = np.sqrt(np.diag(covariance))
     beyond_chance = np.where(least == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE) * stds
-    mask, counted = (np.zeros_like(places.mask) for _ in range(2))
+    counted = np.zeros_like(places.mask)
     regions = list[WearRegion]()
     for i in map(int, np.flatnonzero(sure)):
         one = tuple(where[i])
@@ -258,7 +258,7 @@ def find_wear(
         sure[i] = places.whole[one] or deep or region.volume > beyond_chance[i]
         if sure[i]:
             regions.append(region)
-            mask[one], counted[one] = standing, whole
+            counted[one] = whole
     regions.sort(key=lambda region: -region.volume)
     looked_at = ~(rim(counted, places.around) | rim(places.at_ends, places.around))
     faint = faint_wear(sheets, looked_at, noise, places.spread) if errors else math.nan

@@ -109,7 +109,7 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     """
     outline = outlines(profiles)
     slices, around = outline.shape[:2]
-    vertices = np.concatenate([outline, np.broadcast_to(profiles.z[:, None, None], (slices, around, 1))], axis=2).reshape(-1, 3)
+    vertices = _stacked(outline, profiles.z)
     groove = _below_groove(profiles)
     walls = _walls(around, np.delete(np.arange(slices - 1), groove))
     cap = _cap(profiles, around)
@@ -125,6 +125,12 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     neck = _neck(profiles, cap, outline, int(groove[0]), centre + 2)
     faces = np.vstack([walls, low, high, neck.faces])
     return Triangles(np.vstack([vertices, hub, neck.vertices]), faces.astype(np.int64))
+
+
+def _stacked(outline: Floats, z: Floats) -> Floats:
+    """Outlines (slices, points, 2) at their heights, (slices · points, 3)."""
+    heights = np.broadcast_to(z[:, None, None], (*outline.shape[:2], 1))
+    return np.concatenate([outline, heights], axis=2).reshape(-1, 3)
 
 
 def _walls(around: int, slices: Ints) -> Ints:
@@ -290,10 +296,10 @@ def tooth_triangles(profiles: ToothProfiles, tooth: int) -> Triangles:
     one = replace(profiles, half_angle=profiles.half_angle[tooth : tooth + 1])
     outline = _turned(outlines(one)[:, : 2 * len(profiles.radius) + 2 * TIP_STEPS - 1], tooth * profiles.gear.pitch_angle)
     slices, around = outline.shape[:2]
-    vertices = np.concatenate([outline, np.broadcast_to(profiles.z[:, None, None], (slices, around, 1))], axis=2).reshape(-1, 3)
     cap = _tooth_cap(len(profiles.radius))
     walls = _walls(around, np.arange(slices - 1))
-    return Triangles(vertices, np.vstack([walls, cap[:, ::-1], cap + (slices - 1) * around]).astype(np.int64))
+    faces = np.vstack([walls, cap[:, ::-1], cap + (slices - 1) * around])
+    return Triangles(_stacked(outline, profiles.z), faces.astype(np.int64))
 
 
 def worn_volume(worn: ToothProfiles, seen: tuple[float, float] = (0.0, 0.0)) -> list[Triangles]:
