@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gearwear.arrays import Bools
-from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, Progress, register
+from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, Progress, on_root, register
+from gearwear.comparison.own_root import root_without
 from gearwear.comparison.pass_limits import grid_of_sample
 from gearwear.comparison.passes import last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import beside_views
@@ -83,12 +84,12 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     worn : frozenset of Side or None
         Sides that are known to be worn throughout; None: the scan decides.
     """
-    scan = _Scan(measured, measured.first, measured.placed.located, worn=worn)
-    look = scan.looked_at()
-    far = look is not None and is_far(*look)
-    likeliest = look[0] if look is not None and far else scan.explained(look)
+    scan = _Scan.of(measured, worn)
+    likeliest, far = scan.told_first()
+    if far and worn is None:  # else the root was asked before
+        scan, likeliest, far = scan.on_root_without(likeliest)
     again = None
-    if far or is_far(likeliest, scan.cells):
+    if far:
         scan, again = scan.located_again(likeliest)
         likeliest = scan.explained()
     return replace(scan.closed(likeliest, again), undecided=tuple(scan.moved(other, again) for other in likeliest.others))
@@ -123,12 +124,34 @@ class _Scan:
     begun: Loop | None = None
     worn: frozenset[Side] | None = None
 
+    @classmethod
+    def of(cls, measured: MeasuredGear, worn: frozenset[Side] | None) -> _Scan:
+        """As it was registered."""
+        return cls(measured, measured.first, measured.placed.located, worn=worn)
+
     @property
     def grid(self) -> CellGrid:
         return self.cells.grid
 
+    def told_first(self) -> tuple[Loop, bool]:
+        """The loop, and whether the scan lies so far off the design by it that it must be located again: few cells tell that as well."""
+        look = self.looked_at()
+        if look is not None and is_far(*look):
+            return look[0], True
+        loop = self.explained(look)
+        return loop, is_far(loop, self.cells)
+
+    def on_root_without(self, loop: Loop) -> tuple[_Scan, Loop, bool]:
+        """The scan, and what it tells first, on the root that it shows once what a loop found is taken back."""
+        measured = self.measured
+        root = root_without(loop, measured.placed, measured.root, measured.design.gears[measured.part], measured.planar)
+        if root is None:
+            return self, loop, True
+        rooted = _Scan.of(on_root(measured, root), self.worn)
+        return rooted, *rooted.told_first()
+
     def looked_at(self) -> Look | None:
-        """The loop on few cells, which tell as well whether the scan must be located again, and by what; None where there are no more than these."""
+        """The loop on few cells; None where there are no more than these."""
         rough = rough_grid(self.grid)
         return None if rough is None else self._closed_on(rough, None)
 

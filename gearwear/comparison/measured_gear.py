@@ -383,6 +383,24 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
     return replace(again, mark=measured.mark)
 
 
+@on_one_thread
+def on_root(measured: MeasuredGear, root: Root) -> MeasuredGear:
+    """A registered scan with its gear on another root.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+        As `register` gives it.
+    root : Root
+        Of the same gear.
+    """
+    placed = _laid(measured.placed, measured.scans, root, measured.planar, Pose.identity())
+    grid = measured.first.grid
+    own = grid.gear is measured.gear  # those of another scan stay
+    again = _in_cells(measured.design, measured.scans, measured.part, placed, root, None if own else grid)
+    return replace(again, mark=measured.mark)
+
+
 def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, motion: Pose) -> PlacedScan:
     views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
     return place(views, root.gear, normals, planar, turned(placed, motion), no_datum(root))
