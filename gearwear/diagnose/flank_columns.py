@@ -53,10 +53,10 @@ def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple
 
     With the sliding, and in proportion to the way from the pitch point, below and above it by amounts of their own: as the load is shared.
     """
-    return on_worn(cells, _law_shapes(np.nan_to_num(cells.points.roll), context), worn)
+    return on_worn(cells, law_shapes(np.nan_to_num(cells.points.roll), context), worn)
 
 
-def _law_shapes(roll: Floats, context: Context) -> Floats:
+def law_shapes(roll: Floats, context: Context) -> Floats:
     """The sliding, and the way from the pitch point below and above it, at lengths of roll (m,): (m, 3)."""
     pitch = context.pitch_roll
     return np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
@@ -74,7 +74,7 @@ def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> l
     roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
     more = np.delete(_hats(roll, nodes), still, axis=1)
     up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
-    law = _law_shapes(roll, context)
+    law = law_shapes(roll, context)
     leaning = np.column_stack([up, 1.0 - up, up * law[:, 0], (1.0 - up) * law[:, 0]])
     smooth = np.hstack([law, law[:, 1:] ** 2])
     return [

@@ -30,6 +30,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.diagnose.worn_flanks import worn_flanks
+from gearwear.diagnose.told_by_wear import told_by_wear
 from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
@@ -226,6 +227,7 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
     form = any(pattern.is_form(noise) for pattern in stood.patterns)
     kept = left_in_the_part(problem, stood.model, form)
     kept, instead = of_the_form(fit, problem, kept) if form else (kept, {})
+    kept = told_by_wear(fit, problem, kept)
     if kept != stood.model:
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, kept, noise, known)

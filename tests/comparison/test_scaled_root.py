@@ -17,7 +17,9 @@ TOO_LARGE_PPM = 4500.0
 AS_CUT = PINION.rack_tip_radius
 
 
-@pytest.mark.parametrize("drawn", [AS_CUT, pytest.param(AS_CUT - 0.1, marks=pytest.mark.long)], ids=["drawing right", "drawing wrong"])
+@pytest.mark.parametrize(
+    "drawn", [AS_CUT, pytest.param(AS_CUT - 0.1, marks=pytest.mark.long)], ids=["drawing right", "drawing wrong"]
+)
 def test_a_scale_bends_no_root(drawn):
     gear = Gear.from_spec(replace(designed().spec, rack_tip_radius=drawn))
     recipe = Recipe(noise_um=6.0, jitter=1.0, pose="any", effects=(Effect("scale", {"relative_ppm": TOO_LARGE_PPM}),))
