@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from gearwear.arrays import Bools
-from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, Progress, on_root, register
-from gearwear.comparison.own_root import root_without
+from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, Progress, register
 from gearwear.comparison.pass_limits import grid_of_sample
 from gearwear.comparison.passes import last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import beside_views
@@ -20,7 +19,8 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.loop import Loop, close_loop
 from gearwear.diagnose.pooled import carried, left_out, loop_grid, rough_grid
-from gearwear.placing.cells import CellGrid, Cells, bin_points
+from gearwear.placing.cells import CellGrid, Cells, bin_points, cells_of, noise
+from gearwear.placing.sums import CellSums
 from gearwear.scan.reading import read_scan
 from gearwear.threads import on_one_thread
 
@@ -84,12 +84,12 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     worn : frozenset of Side or None
         Sides that are known to be worn throughout; None: the scan decides.
     """
-    scan = _Scan.of(measured, worn)
-    likeliest, far = scan.told_first()
-    if far and worn is None:  # else the root was asked before
-        scan, likeliest, far = scan.on_root_without(likeliest)
+    scan = _Scan(measured, measured.first, measured.placed.located, worn=worn)
+    look = scan.looked_at()
+    far = look is not None and is_far(*look)
+    likeliest = look[0] if look is not None and far else scan.explained(look)
     again = None
-    if far:
+    if far or is_far(likeliest, scan.cells):
         scan, again = scan.located_again(likeliest)
         likeliest = scan.explained()
     return replace(scan.closed(likeliest, again), undecided=tuple(scan.moved(other, again) for other in likeliest.others))
@@ -124,34 +124,12 @@ class _Scan:
     begun: Loop | None = None
     worn: frozenset[Side] | None = None
 
-    @classmethod
-    def of(cls, measured: MeasuredGear, worn: frozenset[Side] | None) -> _Scan:
-        """As it was registered."""
-        return cls(measured, measured.first, measured.placed.located, worn=worn)
-
     @property
     def grid(self) -> CellGrid:
         return self.cells.grid
 
-    def told_first(self) -> tuple[Loop, bool]:
-        """The loop, and whether the scan lies so far off the design by it that it must be located again: few cells tell that as well."""
-        look = self.looked_at()
-        if look is not None and is_far(*look):
-            return look[0], True
-        loop = self.explained(look)
-        return loop, is_far(loop, self.cells)
-
-    def on_root_without(self, loop: Loop) -> tuple[_Scan, Loop, bool]:
-        """The scan, and what it tells first, on the root that it shows once what a loop found is taken back."""
-        measured = self.measured
-        root = root_without(loop, measured.placed, measured.root, measured.design.gears[measured.part], measured.planar)
-        if root is None:
-            return self, loop, True
-        rooted = _Scan.of(on_root(measured, root), self.worn)
-        return rooted, *rooted.told_first()
-
     def looked_at(self) -> Look | None:
-        """The loop on few cells; None where there are no more than these."""
+        """The loop on few cells, which tell as well whether the scan must be located again, and by what; None where there are no more than these."""
         rough = rough_grid(self.grid)
         return None if rough is None else self._closed_on(rough, None)
 
@@ -189,7 +167,8 @@ class _Scan:
         else:
             streamed = relocated_pass(measured.streamed, again)
             measured, cells = replace(measured, streamed=streamed), streamed.first.cells
-        measured = replace(measured, placed=replace(placed, located=located))
+        registration = replace(placed.registration, noise=noise(cells))  # without what goes up and down within a cell
+        measured = replace(measured, placed=replace(placed, registration=registration, located=located))
         return _Scan(measured, cells, located, rest, loop, self.worn), again
 
     def moved(self, loop: Loop, again: Relocation | None) -> MeasuredGear:
@@ -215,4 +194,6 @@ class _Scan:
 
 def _with_scatter(located: SurfacePoints, rest: SurfacePoints, grid: CellGrid) -> Cells:
     """Cells of points with the scatter of what a loop leaves of them: what goes up and down within a cell because the effects do is none."""
-    return replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
+    index = grid.index(located)
+    cells, left = (cells_of(CellSums.of(points, index, grid.count), grid) for points in (located, rest))
+    return replace(cells, scatter=left.scatter)

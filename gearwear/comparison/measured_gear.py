@@ -14,7 +14,7 @@ from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.collecting import Cut
 from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.passes import Streamed, first_pass
-from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
+from gearwear.comparison.placed_notes import doubts_of, said_of_scale, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, clip_of, with_pits
 from gearwear.comparison.stated import at_20_degrees, check_streamed, tooth_1_of, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
@@ -24,12 +24,13 @@ from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints
 from gearwear.design.twist import Toothing, drawn_height, refuse
-from gearwear.diagnose.effects.base import MADE, MEASURED, Context, Kind
+from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.layers import layers_apart, said_of_layers
 from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose
+from gearwear.placing.proportion import out_of_scale
 from gearwear.placing.registration import below_tips
 from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
@@ -192,6 +193,7 @@ class MeasuredGear(Card):
         placed = doubts_of(self.gear, self.design.gears[self.part], self.placed, self.noise)
         return (
             *placed,
+            *(said_of_scale(self.loop) if self.design.scanner.scale_limit is None else ()),
             *said_of_layers(self.first, self.layered),
             *broken_sentences(self.broken),
             *self.placed.registration.notes,
@@ -383,24 +385,6 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
     return replace(again, mark=measured.mark)
 
 
-@on_one_thread
-def on_root(measured: MeasuredGear, root: Root) -> MeasuredGear:
-    """A registered scan with its gear on another root.
-
-    Parameters
-    ----------
-    measured : MeasuredGear
-        As `register` gives it.
-    root : Root
-        Of the same gear.
-    """
-    placed = _laid(measured.placed, measured.scans, root, measured.planar, Pose.identity())
-    grid = measured.first.grid
-    own = grid.gear is measured.gear  # those of another scan stay
-    again = _in_cells(measured.design, measured.scans, measured.part, placed, root, None if own else grid)
-    return replace(again, mark=measured.mark)
-
-
 def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, motion: Pose) -> PlacedScan:
     views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
     return place(views, root.gear, normals, planar, turned(placed, motion), no_datum(root))
@@ -454,4 +438,7 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
         ring = gear.orientation * mate.orientation  # -1 where one of both is one
         length = math.sqrt(centre**2 - (gear.base_radius + ring * mate.base_radius) ** 2)
         line = (ring * mate.teeth / gear.teeth, mate.orientation * length)
-    return make_context(cells, placed.registration.pose.rotation, planar, line, design.scanner.scale_limit)
+    limit = design.scanner.scale_limit
+    if limit is None and (ratio := out_of_scale(placed.located, cells.grid.gear)) is not None:
+        limit = max(SCALE_LIMIT, 2.0 * abs(ratio))  # what a calibrated scanner may do is no limit to one that is not
+    return make_context(cells, placed.registration.pose.rotation, planar, line, limit)

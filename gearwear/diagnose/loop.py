@@ -29,8 +29,8 @@ from gearwear.diagnose.of_the_part import left_in_the_part, of_the_form
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
-from gearwear.diagnose.worn_flanks import worn_flanks
 from gearwear.diagnose.told_by_wear import told_by_wear
+from gearwear.diagnose.worn_flanks import worn_flanks
 from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends

@@ -10,7 +10,9 @@ from tests.synthetic.removal import SlidingWear
 
 
 def one(effect):
-    recipe = Recipe(noise_um=8.0, jitter=1.0, pose="any", fillets_follow=False, effects=(effect,), wear=(SlidingWear(50.0, side=-1),))
+    recipe = Recipe(
+        noise_um=8.0, jitter=1.0, pose="any", fillets_follow=False, effects=(effect,), wear=(SlidingWear(50.0, side=-1),)
+    )
     return study(Scenario("test", recipe.of_size(20_000), 5, mate=False))[0]
 
 

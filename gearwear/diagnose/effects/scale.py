@@ -12,6 +12,8 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
 from gearwear.diagnose.parameter import Parameter
 
+SCALE = "scale"
+
 
 @dataclass(frozen=True)
 class Scale(CatalogueEffect):
@@ -23,7 +25,7 @@ class Scale(CatalogueEffect):
     11.5 ppm a kelvin for steel: 10 K is 115 ppm.
     """
 
-    name: ClassVar[str] = "scale"
+    name: ClassVar[str] = SCALE
     kind: ClassVar[Kind] = Kind.MEASUREMENT
     source: ClassVar[str] = "similarity: displacement e P dotted with the normal; thermal expansion of steel 11.5 ppm/K"
     tells_apart: ClassVar[str] = (
