@@ -44,7 +44,7 @@ from gearwear.meshing.shafts import take_up
 from gearwear.meshing.slices import common_width
 from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
-from gearwear.placing.datum import LOW, THIN_OR_WORN, bends_otherwise
+from gearwear.placing.datum import LOW, Datum, bends_otherwise
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
 from gearwear.placing.side_maps import common_fillet
@@ -219,14 +219,10 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is said to look worn where
     it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells, or
     where what the loop found leaves none."""
-    registration, loop = measured.placed.registration, measured.loop
-    asked = any(note.startswith(THIN_OR_WORN) for note in registration.notes)
-    if asked and (before or (loop is not None and not _still_low(measured, loop))):
-        registration = replace(
-            registration, notes=tuple(note for note in registration.notes if not note.startswith(THIN_OR_WORN))
-        )
-        measured = replace(measured, placed=replace(measured.placed, registration=registration))
-    side = registration.datum.worn_side
+    datum, loop = measured.placed.registration.datum, measured.loop
+    if datum.low and (before or (loop is not None and not _still_low(measured, loop))):
+        return _with_datum(measured, replace(datum, low=0.0))
+    side = datum.worn_side
     both = loop is not None and len(loop.worn_sides) == 2  # then the other side is no datum either, and `worn_notes` says so
     if side is None:
         return measured
@@ -241,9 +237,12 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
         borne_out = f"{looks} used as datum; the {side.opposite} (coast) flanks are assumed unworn"
     else:
         borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them")
-    said = bends_otherwise(side)
-    notes = tuple(borne_out if note == said else note for note in registration.notes if not (both and note == said))
-    return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
+    return _with_datum(measured, replace(datum, borne_out="" if both else borne_out))
+
+
+def _with_datum(measured: MeasuredGear, datum: Datum) -> MeasuredGear:
+    registration = replace(measured.placed.registration, datum=datum)
+    return replace(measured, placed=replace(measured.placed, registration=registration))
 
 
 def _still_low(measured: MeasuredGear, loop: Loop) -> bool:

@@ -22,10 +22,8 @@ LEAST_BEND = 1e-4
 """mm; a bend that says nothing of wear however small the noise."""
 MEDIANS_ERROR = 0.5 * math.pi
 """Standard error of a median over teeth of medians over the face, in that of a mean: sqrt(π / 2) for each."""
-THIN_OR_WORN = "both flank sides are smooth but"
-"""How the note begins that thin teeth may be worn ones."""
 LOW = 0.002
-"""mm by which flanks must lie low against fillets and tips for that to be said."""
+"""mm by which flanks must lie low against fillets and tips for it to be said that thin teeth may be worn ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,17 +38,37 @@ class Datum:
         Where all flanks of that side look worn and are left out.
     surfaces : tuple of str
         Names for the report.
-    notes : tuple of str
-        Assumptions and doubts.
     doubtful : tuple of Side
         Where no side is called worn, those that may be: that the scan does not show their flanks to be straight.
+    low : float or None
+        How far smooth flanks lie low against fillets and tips, mm: thin teeth, or worn ones. 0 where they do not, None where nothing else was seen.
+    borne_out : str or None
+        What is said of the side left out once it is known how it is worn; None: as it looks.
     """
 
     mask: Bools
     worn_side: Side | None
     surfaces: tuple[str, ...]
-    notes: tuple[str, ...]
     doubtful: tuple[Side, ...] = ()
+    low: float | None = 0.0
+    borne_out: str | None = None
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the choice assumes and what it cannot tell, each a sentence."""
+        if self.worn_side is not None:
+            said = bends_otherwise(self.worn_side) if self.borne_out is None else self.borne_out
+            return (said,) if said else ()
+        if self.low is None:
+            return (
+                "only flanks were seen: a uniform loss of all flanks of one side could not be told from a rotation of thinner teeth",
+            )
+        if self.low > 0.0:
+            return (
+                f"both flank sides are smooth but {1e3 * self.low:.1f} µm low against fillets and tips: thinner teeth, or the same loss on every flank "
+                f"of one side and a rotation; the flanks alone cannot tell, and the rotation may be off by up to {1e3 * self.low:.1f} µm at the base circle",
+            )
+        return ()
 
 
 def flank_shapes(cells: Cells) -> Floats:
@@ -105,8 +123,8 @@ def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset(
             if code == FLANK and worn is not None:
                 name = f"{worn.opposite} flanks (coast)"
             surfaces.append(name)
-    notes = list(_doubts(cells, worn, noise, ignore))
-    return Datum(mask, worn, tuple(surfaces), tuple(notes), tuple(doubtful))
+    low = 0.0 if worn is not None else _low(cells, noise, ignore)
+    return Datum(mask, worn, tuple(surfaces), tuple(doubtful), low)
 
 
 def median_bend(profile: Floats) -> float:
@@ -124,10 +142,9 @@ def bends_otherwise(side: Side, seen: str = "") -> str:
     return f"the {side} flanks {how} and are not used as datum; {seen} {side.opposite} (coast) flanks are assumed unworn"
 
 
-def _doubts(cells: Cells, worn: Side | None, noise: float, ignore: frozenset[int]) -> list[str]:
-    """Sentences on what the choice assumes and what it cannot tell."""
-    if worn is not None:
-        return [bends_otherwise(worn)]
+def _low(cells: Cells, noise: float, ignore: frozenset[int]) -> float | None:
+    """How far the flanks of both sides lie low against fillets and tips, beyond what noise and their own differences make, mm; 0 where they do not, None
+    where only flanks were seen."""
     p = cells.points
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # flanks nobody saw
@@ -136,17 +153,10 @@ def _doubts(cells: Cells, worn: Side | None, noise: float, ignore: frozenset[int
     other = [value for value in other if np.isfinite(value)]
     flank = flank[np.isfinite(flank)]
     if not other or not len(flank):
-        return [
-            "only flanks were seen: a uniform loss of all flanks of one side could not be told from a rotation of thinner teeth"
-        ]
-    thinner = float(np.median(flank)) - min(other)  # against each of them: tips alone may be higher than drawn
+        return None
+    low = min(other) - float(np.median(flank))  # against each of them: tips alone may be higher than drawn
     # Flanks differ from one another by more than noise (pitch, table): their own spread says how well their middle is known.
     error = np.hypot(
         1.25 * median_scale(flank)[1] / np.sqrt(len(flank)), noise / np.sqrt(np.median(cells.count[cells.seen]) * len(flank))
     )
-    if thinner < -max(4.0 * error, LOW):
-        return [
-            f"{THIN_OR_WORN} {-1e3 * thinner:.1f} µm low against fillets and tips: thinner teeth, or the same loss on every flank "
-            f"of one side and a rotation; the flanks alone cannot tell, and the rotation may be off by up to {-1e3 * thinner:.1f} µm at the base circle"
-        ]
-    return []
+    return low if low > max(4.0 * error, LOW) else 0.0

@@ -81,8 +81,8 @@ class Registration(Card):
         Scatter of points inside cells, mm.
     fitting : float
         Share of points that lie on the design.
-    notes : tuple of str
-        Doubts and assumptions, each a sentence.
+    doubts : tuple of str
+        What a reader must know of how it was found, each a sentence.
     without : tuple of (Side, (6,) float)
         For each side that may be worn, how the pose moves if its flanks are no datum, mm and rad.
     """
@@ -96,8 +96,13 @@ class Registration(Card):
     bands: Bands
     noise: float
     fitting: float
-    notes: tuple[str, ...]
+    doubts: tuple[str, ...]
     without: tuple[tuple[Side, Floats], ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Doubts and assumptions, each a sentence."""
+        return (*self.doubts, *self.datum.notes)
 
     def headline(self) -> str:
         settled = "settled" if self.converged else "did not settle"
@@ -364,18 +369,20 @@ def _known(
     without = tuple((side, _motion_without(cells, datum, side, free)) for side in datum.doubtful)
     farthest = max((motion for _, motion in without), key=lambda motion: abs(motion[5]), default=np.zeros(6))
     covariance = covariance + np.outer(farthest, farthest)
-    notes = list(datum.notes)
+    doubts = []
     if fitting < 0.8:
-        notes.insert(0, f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
+        doubts.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
     if not observed[2] and not planar:
         unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
         if has_screw(gear):
             unseen += "; along helical teeth height and turn go together, and the turn is stated for this height"
-        notes.append(unseen)
+        doubts.append(unseen)
     converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
     if not converged:
-        notes.insert(0, f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
-    return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes), without)
+        doubts.insert(0, f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
+    return Registration(
+        pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(doubts), without
+    )
 
 
 def _motion_without(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floats:

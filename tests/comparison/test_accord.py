@@ -10,7 +10,6 @@ import pytest
 from gearwear.comparison.stations import in_accord, worn_notes
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
-from gearwear.placing.datum import THIN_OR_WORN, bends_otherwise
 from gearwear.report.words.verdict import doubts, verdict
 from tests.report.fake import changed, real_results
 
@@ -18,7 +17,7 @@ from tests.report.fake import changed, real_results
 def left_out(side: Side):
     """The small real result, worn on a left flank, with a side left out as datum."""
     measured = changed(real_results().measured, "placed.registration.datum.worn_side", side)
-    return changed(measured, "placed.registration.notes", ("another note", bends_otherwise(side)))
+    return changed(measured, "placed.registration.doubts", ("another note",))
 
 
 def test_a_side_that_is_worn_may_look_worn():
@@ -78,7 +77,8 @@ def test_the_other_side_is_not_assumed_unworn_where_both_look_worn(side):
 @pytest.mark.parametrize("low_um", [0.0, 8.0])
 def test_flanks_are_said_to_be_low_where_what_was_found_leaves_them_so(low_um):
     """8 µm against fillets and tips beside all effects, or none once they are taken out."""
-    measured = changed(real_results().measured, "placed.registration.notes", (f"{THIN_OR_WORN} 8.0 µm low", "another note"))
+    measured = changed(real_results().measured, "placed.registration.datum.low", 0.008)
+    measured = changed(measured, "placed.registration.doubts", ("another note",))
     flank = measured.first.points.surface == FLANK
     after = measured.loop.residual_after - np.where(flank, 1e-3 * low_um, 0.0)
     said = in_accord(changed(measured, "loop.residual_after", after), real_results().wear.found).placed.registration.notes
