@@ -191,11 +191,14 @@ def _inspection(inspection: Json | None, half: str = "") -> Iterator[Quantity]:
         )
     teeth = ((inspection.get("dimensions") or {}).get("tooth_thickness") or {}).get("teeth") or []
     for tooth in teeth:
+        seen = tooth["thickness_mm"]
+        if seen is None:  # the tooth was not seen, or is broken off
+            continue
         yield Quantity(
             name=f"{half}tooth_thickness_mm",
             scope=TOOTH,
-            value=_number(tooth["thickness_mm"].get("value")),
-            std=_number(tooth["thickness_mm"].get("expanded")) / factor,
+            value=_number(seen.get("value")),
+            std=_number(seen.get("expanded")) / factor,
             tooth=int(tooth["tooth"]),
         )
 

@@ -14,6 +14,8 @@ UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "in": 25.4, "inch": 25
 
 SMALL = 0.1
 """Share of a gear's longest side below which hardly anybody scans a piece of it alone."""
+LARGE = 6.0
+"""Longest side, in a gear's, beyond which it is no table with a gear on it."""
 OFFERED = ("mm", "cm", "m", "um", "in")
 
 
@@ -58,8 +60,8 @@ def check_size(scan: Scan, gear: Gear) -> None:
 
     Notes
     -----
-    Two cases. The size is impossible for any part of this gear (above 1.5 or below 0.01 of its longest side) and
-    another unit brings it to 0.2 … 1.2. Or it is possible for a part of the gear, but in another unit both the
+    Two cases. The size is impossible for any part of this gear, and for a table with it (above `LARGE` or below 0.01 of its longest side) and
+    another unit brings it to 0.2 … 1.2. Or it is possible, but in another unit both the
     longest and the shortest side are those of the whole gear or of a view of it (0.75 … 1.1; of a section the two
     sides, 0.9 … 1.1). A size that no unit explains is not refused here: it is another gear, which registration finds.
     """
@@ -70,7 +72,7 @@ def check_size(scan: Scan, gear: Gear) -> None:
     ratio = measured[: len(whole)] / whole
     if not ratio[0] > 0.0:
         return
-    impossible = ratio[0] > 1.5 or ratio[0] < 0.01
+    impossible = ratio[0] > LARGE or ratio[0] < 0.01
     least = np.array([0.9, 0.9] if flat else [0.75, 0.0, 0.75])
     best, unit = np.inf, ""
     for name in OFFERED:

@@ -65,5 +65,14 @@ def test_meshing_and_inspection():
     assert "runout_um" not in gear
 
 
+def test_a_tooth_whose_thickness_is_not_known_has_no_row():
+    """Of a tooth that was not seen, or is broken off, the report has null; a whole batch failed on it."""
+    seen, unseen = {"tooth": 1, "thickness_mm": {"value": 9.9, "expanded": 0.02}}, {"tooth": 2, "thickness_mm": None}
+    dimensions = {"tooth_thickness": {"teeth": [seen, unseen]}}
+    given = report() | {"inspection": {"coverage_factor": 2.0, "findings": [], "dimensions": dimensions}}
+    told = {tooth: row for (name, tooth, _), row in rows(given, TOOTH).items() if name == "tooth_thickness_mm"}
+    assert list(told) == [1] and (told[1].value, told[1].std) == (9.9, 0.01)
+
+
 def test_a_report_without_anything_has_no_rows():
     assert quantities({}) == []

@@ -77,10 +77,10 @@ GEAR_SIZE = np.array([88.9, 88.9, 15.0])
 @pytest.mark.parametrize(
     ("said", "kind", "share", "named"),
     [
-        # impossible for any part of the gear: more than 1.5 of its longest side, and another unit brings it to 0.2 … 1.2
-        ("in", "cloud", (1.4, 0.1, 0.1), ""), ("in", "cloud", (1.6, 0.1, 0.1), "cm"),
-        ("in", "cloud", (3.0, 0.1, 0.1), "cm"), ("in", "cloud", (3.1, 0.1, 0.1), ""),
-        ("in", "cloud", (5.0, 0.1, 0.1), ""), ("in", "cloud", (5.2, 0.1, 0.1), "mm"),
+        # a table with the gear on it may be of any size up to six gears, whatever another unit would make of it
+        ("in", "cloud", (1.9, 1.9, 0.4), ""), ("in", "cloud", (3.0, 0.1, 0.1), ""), ("in", "cloud", (5.9, 0.1, 0.1), ""),
+        # impossible for any part of the gear: more than that, and another unit brings it to 0.2 … 1.2
+        ("in", "cloud", (6.1, 0.1, 0.1), "mm"), ("in", "cloud", (30.4, 0.1, 0.1), "mm"), ("cm", "cloud", (6.1, 0.1, 0.1), "mm"),
         # or less than a hundredth
         ("mm", "cloud", (0.0098, 0.0098, 0.0001), "in"), ("mm", "cloud", (0.0102, 0.0102, 0.0001), ""),
         # of several units the one that comes nearest to the gear
