@@ -57,8 +57,8 @@ class OpenVolume:
             causes.append(
                 "worn flanks of which no tooth was seen whole: what is missing where nothing was seen is not in the value"
             )
-        if self.found.faint > NORMAL_95 * self.found.volume_std and self.unsure_or_worn == 0.0:
-            high += self.found.faint
+        if (faint := self.too_faint) > 0.0:
+            high += faint
             causes.append("wear shallower than the limits of detection of its flanks")
         if (unsure := self.unsure_or_worn) > 0.0:
             high += unsure
@@ -83,6 +83,12 @@ class OpenVolume:
         """What of the volume lies on teeth on which views lie apart, mm³."""
         apart = self.measured.layered
         return sum(region.volume for region in self.found.regions if apart[region.tooth])
+
+    @property
+    def too_faint(self) -> float:
+        """What wear too faint to be found may come to, mm³; 0 where that is within the volume's 95 % interval, or where more is open of the same flanks."""
+        faint = self.found.faint
+        return faint if faint > NORMAL_95 * self.found.volume_std and self.unsure_or_worn == 0.0 else 0.0
 
     @property
     def form_or_wear(self) -> float:

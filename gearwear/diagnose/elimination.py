@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Ints
+from gearwear.design.surface import TIP
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, judge, with_levels
@@ -63,9 +64,10 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
     whole = replace(fit, target=fit.target + np.sum(pieces, axis=0)) if pieces else fit
     pieces_of: tuple[Pattern, ...] | None = None
     while True:
-        fold = by_block if any(c.effect.tooth_specific for c in model) else by_tooth
+        specific = any(c.effect.tooth_specific for c in model)
+        fold, apart = (by_block, _apart_by_teeth(fit, model)) if specific else (by_tooth, [None for _ in model])
         folded = fit.folded(model, fold)
-        evidence = [judge(problem, model, i, fit.use, fit.covariance, folded, noise) for i in range(len(model))]
+        evidence = [judge(problem, model, i, fit.use, fit.covariance, folded, noise, apart[i]) for i in range(len(model))]
         kept = [c.name in problem.always for c in model]
         worst = _worst(evidence, kept)
         if worst is None and pieces_of is None:
@@ -82,6 +84,15 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         if worst is None:
             return Stood(model, tuple(evidence), fold, patterns)
         model = model[:worst] + model[worst + 1 :]
+
+
+def _apart_by_teeth(fit: Fit, model: Model) -> list[tuple[float, float] | None]:
+    """How far teeth differ in each effect that all have in common; None of the others, and where few teeth were seen."""
+    seen = np.unique(fit.cells.points.tooth[fit.use & (fit.cells.points.surface <= TIP)])
+    told = len(seen) >= rules().folds_of_teeth // 2
+    return [
+        one if told and not c.effect.tooth_specific else None for one, c in zip(fit.apart_by_teeth(model), model, strict=True)
+    ]
 
 
 def _worst(evidence: list[Evidence], kept: list[bool]) -> int | None:

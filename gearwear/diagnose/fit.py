@@ -146,6 +146,30 @@ class Fit:
         fields = [own - columns @ pull for own, pull in self._too_small(model, columns, inverse, noise)]
         return np.column_stack(fields) / np.sqrt(len(fields)) if fields else np.zeros((len(self.target), 0))
 
+    def apart_by_teeth(self, model: Model) -> list[tuple[float, float]]:
+        """How far teeth differ in each effect of the model: standard error of its size, in that size, from what each tooth has it larger or smaller beside
+        the other effects, and on how many teeth that rests, less what the effect may adapt to them.
+
+        Notes
+        -----
+        With h what the others leave of the effect's field, the size that a tooth adds is ``Σ w h e / Σ w h²``, e what the model leaves; teeth count as many as
+        evenly shared ``Σ w h²`` would be (Satterthwaite 1946). An effect on a few teeth is told by few.
+        """
+        columns = self.columns(model)
+        gram = self._gram(columns)
+        amplitudes, inverse = gram.solve(np.arange(columns.shape[1]))
+        weight, left = self.weight, self.target - columns @ amplitudes
+        teeth = self.use & (self.cells.points.surface <= TIP)
+        tooth, result = self.cells.points.tooth[teeth], []
+        for candidate, part in zip(model, self.parts(model), strict=True):
+            own = amplitudes[part]
+            field = columns @ (inverse[:, part] @ (np.linalg.pinv(inverse[part, part]) @ own))
+            told = np.bincount(tooth, (weight * field**2)[teeth])
+            number = float(told.sum() ** 2 / max(float(told @ told), 1e-300)) - len(own) - len(candidate.shape) + 1.0
+            size: Floats = np.bincount(tooth, (weight * field * left)[teeth]) / max(float(told.sum()), 1e-300)
+            result.append((of_units(size, max(number, 1.5)), max(number, 1.5)))
+        return result
+
     def level_std(self, model: Model, hidden: Floats) -> tuple[float, float]:
         """Standard deviation of the model's mean over all left and over all right flanks, mm; `hidden` as that function gives it."""
         columns = self.columns(model)

@@ -70,6 +70,7 @@ def judge(
     covariance: CellCovariance,
     folded: Gram,
     noise: float,
+    by_teeth: tuple[float, float] | None = None,
 ) -> Evidence:
     """Judge one of the chosen effects with all the others in place.
 
@@ -90,6 +91,9 @@ def judge(
         tooth cannot predict.
     noise : float
         Scatter of points, mm.
+    by_teeth : (float, float) or None
+        Standard error of its size, in that size, from what teeth differ in it, and on how many that rests (`Fit.apart_by_teeth`); None where `folded` tells, by teeth, or each tooth has
+        an amount of its own.
     """
     candidate = chosen[index]
     rest = chosen[:index] + chosen[index + 1 :]
@@ -109,6 +113,9 @@ def judge(
     asked = beyond_chance(left_out.number, tried)
     # At half of it the left-out are explained no better with the effect than without.
     holds = left_out.share > max(0.5, asked * left_out.share_error)
+    if by_teeth is not None:  # blocks of every tooth show what some teeth alone have
+        error, number_of_teeth = by_teeth
+        holds &= beyond_chance(number_of_teeth, tried) * error < 1.0
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
     least = max(rules().least_share * noise, rules().least_of_largest * _largest(problem, chosen))
@@ -132,14 +139,14 @@ class _LeftOut:
     number: int
 
 
-def beyond_chance(number: int, asked: int) -> float:
+def beyond_chance(number: float, asked: int) -> float:
     """Standard errors, told by what so many units differ in, that a mean of theirs exceeds by chance in one of `asked` questions (Student, Bonferroni)."""
-    return float(stdtrit(max(number - 1, 1), 1.0 - min(rules().significance / asked, 0.5)))
+    return float(stdtrit(max(number - 1.0, 0.5), 1.0 - min(rules().significance / asked, 0.5)))
 
 
-def of_units(parts: Floats, number: int) -> float:
+def of_units(parts: Floats, number: float) -> float:
     """Standard error of a sum from its parts by so many independent units, of which the expected sum is taken off."""
-    return math.sqrt(number / max(number - 1, 1) * float(parts @ parts))
+    return math.sqrt(number / max(number - 1.0, 0.5) * float(parts @ parts))
 
 
 def _left_out(folded: Gram, own: Ints) -> _LeftOut:

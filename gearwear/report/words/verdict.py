@@ -107,7 +107,18 @@ def _wear_found(results: Results) -> str:
             f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / nominal, 2)}{SPACE}%)"
             " thinner than designed at the reference circle"
         )
-    return text + (f"; {_may_be(results)}" if _open(results) else "")
+    if _open(results):
+        return f"{text}; {_may_be(results)}"
+    return f"{text}; {too_faint}" if (too_faint := _too_faint(results)) else text
+
+
+def _too_faint(results: Results) -> str:
+    """What the volume may come to with wear that does not stand out; "" where that is within what is known of it."""
+    if results.open_volume.too_faint <= 0.0:
+        return ""
+    limits = results.volume_range
+    assert limits is not None
+    return f"with wear too shallow to be found it may be up to {significant(limits[1], 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
 
 
 def _open(results: Results) -> bool:
@@ -335,6 +346,8 @@ def key_figures(results: Results) -> list[KeyFigure]:
     if _open(results):  # without a region the value is 0, and the limits say more than that
         open_ = f"{_limits(results)} {'are ' if wear.regions else ''}not excluded"
         flanks = f"{flanks}; {open_}" if wear.regions else f"{open_}; {flanks}"
+    elif wear.regions and (too_faint := _too_faint(results)):
+        flanks = f"{flanks}; {too_faint}"
     if results.pieces:
         flanks += "; without what is broken off"
     key = [

@@ -112,3 +112,21 @@ def test_an_amplitude_no_cell_speaks_of_is_not_known():
     amplitudes, _ = fit.problem(1.0, None).gram.solve(np.arange(3))
     (spread,) = fit.uncertainty(model, amplitudes, None, NOISE)
     assert np.isfinite(spread[0, 0]) and np.isnan(spread[1, 1])
+
+
+def test_what_teeth_differ_in_an_effect_is_the_spread_of_its_size():
+    """Each tooth has its own share of a slope: the fitted size of all scatters from gear to gear by what one gear's teeth tell."""
+    one, rng, spread = grid(2.5), np.random.default_rng(4), 0.4
+    at = sides_of(one)
+    sizes, errors = [], []
+    for _ in range(60):
+        share = 1.0 + spread * rng.normal(size=TEETH)[at.tooth]
+        fit = fit_of(one, 0.01 * share * (at.across - 0.5) + 1e-5 * rng.normal(size=at.z.shape), blocks_of(at), NOISE)
+        model = fit.dictionary.candidates
+        columns = fit.columns(model)[fit.use]
+        sizes.append(np.linalg.lstsq(columns, fit.target[fit.use], rcond=None)[0][1] / 0.01)
+        (error, number), _ = fit.apart_by_teeth(model)
+        errors.append(error * sizes[-1])
+        assert number == pytest.approx(TEETH, rel=0.01)  # every tooth tells as much; a slope has one size
+    assert np.std(sizes) == pytest.approx(spread / np.sqrt(TEETH), rel=0.25)
+    assert np.sqrt(np.mean(np.square(errors))) == pytest.approx(spread / np.sqrt(TEETH), rel=0.1)
