@@ -84,7 +84,7 @@ def read_tables(files: Sequence[Path], scope: str) -> list[dict[str, Any]]:
     ----------
     files : sequence of Path
         Parquet files as `rows_parquet` makes them.
-    scope : {"gear", "tooth"}
+    scope : {"gear", "tooth", "pattern", "mark"}
 
     Returns
     -------
