@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -25,6 +25,8 @@ ANSWER = 10.0
 """Seconds within which a scheduler must answer."""
 OVER = "worker-restart-memory"
 """What a scheduler notes of a worker that was ended for its memory."""
+GONE = "the Dask scheduler is gone; what was done is in the store, and the same command goes on from there"
+"""What is said of one that does not answer any more."""
 
 
 @contextmanager
@@ -45,28 +47,33 @@ def local_workers(number: int, memory: float) -> Iterator[Client]:
     Raises
     ------
     InputError
-        If Dask is not installed.
+        If Dask is not installed, or the processes cannot be started.
     """
     try:
         from dask import config
         from distributed import Client, LocalCluster
     except ImportError:
         raise needs("dask[distributed]") from None
-    with (
-        config.set(
-            {f"distributed.worker.memory.{step}": False for step in ("target", "spill", "pause")}
-        ),  # data is not what fills them
-        LocalCluster(
-            n_workers=number,
-            threads_per_worker=1,
-            processes=True,
-            memory_limit=int(memory),
-            scheduler_kwargs={"allowed_failures": 0},  # `outcomes` tries a scan whose worker died once more
-            dashboard_address=":0",
-            silence_logs=logging.CRITICAL,
-        ) as cluster,
-        Client(cluster) as client,
-    ):
+    with ExitStack() as held:
+        # Data is not what fills them.
+        held.enter_context(config.set({f"distributed.worker.memory.{step}": False for step in ("target", "spill", "pause")}))
+        try:
+            cluster = held.enter_context(
+                LocalCluster(
+                    n_workers=number,
+                    threads_per_worker=1,
+                    processes=True,
+                    memory_limit=int(memory),
+                    scheduler_kwargs={"allowed_failures": 0},  # `outcomes` tries a scan whose worker died once more
+                    dashboard_address=":0",
+                    silence_logs=logging.CRITICAL,
+                )
+            )
+            client = held.enter_context(Client(cluster))
+        except OSError as error:
+            raise InputError(
+                f"--workers {number}: cannot be started ({_reason(error)}); fewer, or --workers 0, would be right"
+            ) from None
         yield client
 
 
@@ -92,16 +99,17 @@ def remote_workers(address: str) -> Iterator[Client]:
         from distributed import Client
     except ImportError:
         raise needs("dask[distributed]") from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    try:
-        client = Client(address, timeout=ANSWER)
-    except (OSError, ValueError) as error:
-        reason = next(iter(str(error).splitlines()), type(error).__name__)[:200]
-        raise InputError(
-            f"--scheduler {address}: no Dask scheduler answers ({reason}); the address that dask scheduler printed, such as tcp://10.0.0.5:8786, would be right"
-        ) from None
-    with client:
-        for worker, about in client.get_versions(packages=["gearwear"])["workers"].items():
+    for name in ("distributed", "distributed.client"):  # Dask gives the client's a level of its own
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    with ExitStack() as held:
+        try:
+            client = held.enter_context(Client(address, timeout=ANSWER))
+            workers = client.get_versions(packages=["gearwear"])["workers"]
+        except (OSError, ValueError) as error:
+            raise InputError(
+                f"--scheduler {address}: no Dask scheduler answers ({_reason(error)}); the address that dask scheduler printed, such as tcp://10.0.0.5:8786, would be right"
+            ) from None
+        for worker, about in workers.items():
             its_version = about["packages"].get("gearwear")
             if its_version != gearwear.__version__:
                 raise InputError(
@@ -110,10 +118,25 @@ def remote_workers(address: str) -> Iterator[Client]:
         yield client
 
 
+def _reason(error: Exception) -> str:
+    """What an error says, in one line."""
+    return next(iter(str(error).splitlines()), type(error).__name__)[:200]
+
+
+@contextmanager
+def _answering() -> Iterator[None]:
+    """Round what is asked of a scheduler: one that refuses is told as gone."""
+    try:
+        yield
+    except OSError:
+        raise InputError(GONE) from None
+
+
 def dashboard(client: Client) -> str:
     """Address of the page that shows the workers at work; "" where there is none: it is drawn by bokeh."""
-    serves = "dashboard" in client.scheduler_info().get("services", {}) and find_spec("bokeh") is not None
-    return str(client.dashboard_link) if serves else ""
+    with _answering():
+        serves = "dashboard" in client.scheduler_info().get("services", {}) and find_spec("bokeh") is not None
+        return str(client.dashboard_link) if serves else ""
 
 
 def outcomes(client: Client, jobs: Sequence[Job], work: Work = run) -> Iterator[Outcome]:
@@ -137,15 +160,16 @@ def outcomes(client: Client, jobs: Sequence[Job], work: Work = run) -> Iterator[
     it cannot be seen. So they are tried once more at the end, each alone: then a scan whose worker dies has killed it.
     """
     suspects: list[Job] = []
-    for job, outcome in _sent(client, jobs, work, math.inf):
-        if outcome is None:
-            suspects.append(job)
-        else:
-            yield outcome
-    for suspect in suspects:
-        ended = len(client.get_events(OVER))
-        for job, outcome in _sent(client, [suspect], work, 1):
-            yield outcome or Outcome(job.key, State.FAILED, why=_died(job, len(client.get_events(OVER)) > ended))
+    with _answering():  # what fails where an outcome goes to does not come back here
+        for job, outcome in _sent(client, jobs, work, math.inf):
+            if outcome is None:
+                suspects.append(job)
+            else:
+                yield outcome
+        for suspect in suspects:
+            ended = len(client.get_events(OVER))
+            for job, outcome in _sent(client, [suspect], work, 1):
+                yield outcome or Outcome(job.key, State.FAILED, why=_died(job, len(client.get_events(OVER)) > ended))
 
 
 def _sent(client: Client, jobs: Iterable[Job], work: Work, most: float) -> Iterator[tuple[Job, Outcome | None]]:
@@ -166,7 +190,7 @@ def _sent(client: Client, jobs: Iterable[Job], work: Work, most: float) -> Itera
     for future in finished:
         job = under_way.pop(future)
         if future.status in ("cancelled", "lost"):
-            raise InputError("the Dask scheduler is gone; what was done is in the store, and the same command goes on from there")
+            raise InputError(GONE)
         error = future.exception() if future.status == "error" else None
         if isinstance(error, KilledWorker):
             yield job, None

@@ -18,7 +18,7 @@ import csv
 import io
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,7 +28,7 @@ from gearwear.fleet.keys import Digests, digests_text, parse_digests
 from gearwear.fleet.manifest import MOST_CYCLES, ManifestRow
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.report.files.locking import tried
-from gearwear.report.files.writing import HIDDEN, check_folder, write_data
+from gearwear.report.files.writing import HIDDEN, check_folder, unwritable, write_data
 
 SUFFIXES = {State.DONE: ".json", State.REFUSED: ".refused", State.FAILED: ".failed"}
 TABLE = ".parquet"
@@ -74,9 +74,10 @@ class Store:
             If the folder cannot be written to, or another batch is at work in it.
         """
         check_folder(self.folder)
-        try:
-            (self.folder / MANIFESTS).mkdir(parents=True, exist_ok=True)
-            with tried(self.folder) as alone:
+        with ExitStack() as held:
+            with self._writing():
+                (self.folder / MANIFESTS).mkdir(parents=True, exist_ok=True)
+                alone = held.enter_context(tried(self.folder))
                 if alone is False:
                     raise InputError(
                         f"--out {self.folder}: another batch is at work there; its end, or another folder, would be right"
@@ -85,14 +86,24 @@ class Store:
                     for remains in folder.glob(f"{HIDDEN}*"):
                         with suppress(OSError):
                             remains.unlink()
-                yield
+            yield
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Round writes to this folder alone: what fails beside them, as a scheduler does, is no fault of it."""
+        try:
+            yield
         except OSError as error:
-            raise InputError(
-                f"--out {self.folder}: cannot be written to ({error.strerror or error}); free space and the right to write are needed"
-            ) from None
+            raise unwritable(self.folder, error) from None
 
     def states(self) -> dict[str, State]:
-        """State of every scan that has one, by key."""
+        """State of every scan that has one, by key.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be read.
+        """
         by_suffix = {suffix: state for state, suffix in SUFFIXES.items()}
         states: dict[str, State] = {}
         try:
@@ -103,21 +114,25 @@ class Store:
                         states[stem] = by_suffix[suffix]
         except FileNotFoundError:
             pass
+        except OSError as error:
+            raise InputError(
+                f"{self.folder}: cannot be read ({error.strerror or error}); the right to read it is needed"
+            ) from None
         return states
 
     def publish(self, outcome: Outcome) -> None:
-        """Write what became of a scan; OSError if it cannot be written."""
+        """Write what became of a scan; InputError if it cannot be written."""
         key = outcome.key
-        if outcome.state is State.DONE:
-            write_data(self.folder / f"{key}{TABLE}", outcome.table)
-            write_data(self.folder / f"{key}{SUFFIXES[State.DONE]}", outcome.report)
-        else:
-            write_data(
-                self.folder / f"{key}{SUFFIXES[outcome.state]}", f"{outcome.why.rstrip()}\n".encode("utf-8", "backslashreplace")
-            )
-        for state, suffix in SUFFIXES.items():
-            if state is not outcome.state and state is not State.DONE:
-                (self.folder / f"{key}{suffix}").unlink(missing_ok=True)
+        with self._writing():
+            if outcome.state is State.DONE:
+                write_data(self.folder / f"{key}{TABLE}", outcome.table)
+                write_data(self.folder / f"{key}{SUFFIXES[State.DONE]}", outcome.report)
+            else:
+                why = f"{outcome.why.rstrip()}\n".encode("utf-8", "backslashreplace")
+                write_data(self.folder / f"{key}{SUFFIXES[outcome.state]}", why)
+            for state, suffix in SUFFIXES.items():
+                if state is not outcome.state and state is not State.DONE:
+                    (self.folder / f"{key}{suffix}").unlink(missing_ok=True)
 
     def why(self, key: str, state: State) -> str:
         """The line that says why a scan was refused or failed; of a failure the last one."""
@@ -136,8 +151,9 @@ class Store:
             return Digests()
 
     def keep_digests(self, digests: Digests) -> None:
-        """For the next run."""
-        write_data(self.folder / DIGESTS, digests_text(digests.lasting()).encode("utf-8", "surrogateescape"))
+        """For the next run; InputError if they cannot be written."""
+        with self._writing():
+            write_data(self.folder / DIGESTS, digests_text(digests.lasting()).encode("utf-8", "surrogateescape"))
 
     def keep_manifest(self, name: str, rows: Sequence[tuple[ManifestRow, str, Mapping[str, float]]]) -> None:
         """Write a manifest with the key and the limits of each row, in place of the one of the same name.
@@ -147,6 +163,11 @@ class Store:
         name : str
             Of the manifest's file.
         rows : sequence of (ManifestRow, key, limits)
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
         """
         columns = list(dict.fromkeys(column for row, _, _ in rows for column in row.cells))
         text = io.StringIO()
@@ -158,7 +179,8 @@ class Store:
             writer.writerow(
                 {"key": key, **row.cells, **{f"limit_{quantity}": f"{value:.15g}" for quantity, value in limits.items()}}
             )
-        write_data(self.folder / MANIFESTS / f"{Path(name).stem}.csv", text.getvalue().encode("utf-8", "surrogateescape"))
+        with self._writing():
+            write_data(self.folder / MANIFESTS / f"{Path(name).stem}.csv", text.getvalue().encode("utf-8", "surrogateescape"))
 
     def listed(self) -> list[Listed]:
         """The rows of all manifests, each key once.

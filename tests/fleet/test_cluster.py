@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import subprocess
@@ -12,6 +13,7 @@ from functools import partial
 
 import pytest
 
+from gearwear.errors import InputError
 from gearwear.fleet.batch import run_batch
 from gearwear.fleet.cluster import local_workers, outcomes
 from gearwear.fleet.keys import Options
@@ -54,6 +56,17 @@ def test_who_dies_on_a_scan_takes_that_one_alone():
     assert wrong["raises_key"].why == "RuntimeError: a library failed"
 
 
+@contextmanager
+def threads(number):
+    """A client whose workers are so many threads of this process."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with distributed.Client(
+            processes=False, n_workers=number, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        ) as client:
+            yield client
+
+
 def test_reports_are_the_same_for_any_number_of_workers(tmp_path):
     """0, 1, 2 and 4: workers as threads, which cost no start; processes below, and in benchmarks/fleet."""
     manifest, found = sections(tmp_path, 2), []
@@ -64,12 +77,8 @@ def test_reports_are_the_same_for_any_number_of_workers(tmp_path):
             if not number:
                 yield map(run, jobs)
                 return
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                with distributed.Client(
-                    processes=False, n_workers=number, threads_per_worker=1, dashboard_address=None, silence_logs=50
-                ) as client:
-                    yield outcomes(client, jobs)
+            with threads(number) as client:
+                yield outcomes(client, jobs)
 
         tally = run_batch(manifest, Store(tmp_path / f"{number}"), crew, Options(), 4e9, lambda *told: None)
         assert (tally.done, tally.refused) == (2, 1)
@@ -117,4 +126,54 @@ def test_where_no_scheduler_answers(tmp_path, monkeypatch):
     said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--scheduler", "tcp://127.0.0.1:1")
     assert said.status == 2
     assert "--scheduler tcp://127.0.0.1:1: no Dask scheduler answers" in said.err
+    assert said.err.count("\n") == 1
+
+
+def refused(*arguments, **more):
+    """What a scheduler does that is gone."""
+    raise ConnectionRefusedError(errno.ECONNREFUSED, "Connection refused")
+
+
+@pytest.mark.parametrize("call", ["nthreads", "submit"])
+def test_a_scheduler_that_refuses_midway_is_told_as_such_and_not_as_a_full_disk(tmp_path, monkeypatch, call):
+    @contextmanager
+    def crew(jobs):
+        with threads(1) as client, monkeypatch.context() as patched:
+            patched.setattr(client, call, refused)
+            yield outcomes(client, jobs)
+
+    with pytest.raises(InputError) as caught:
+        run_batch(sections(tmp_path, 1), Store(tmp_path / "store"), crew, Options(), 4e9, lambda *told: None)
+    assert str(caught.value).startswith("the Dask scheduler is gone; what was done is in the store")
+
+
+def test_a_scheduler_that_is_gone_before_it_says_its_workers(tmp_path, monkeypatch):
+    class Client:
+        def __init__(self, address, timeout): ...
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error): ...
+
+        get_versions = refused
+
+    monkeypatch.setattr(distributed, "Client", Client)
+    said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--scheduler", "tcp://10.0.0.5:8786")
+    assert said.status == 2
+    assert (
+        f"--scheduler tcp://10.0.0.5:8786: no Dask scheduler answers ([Errno {errno.ECONNREFUSED}] Connection refused)"
+        in said.err
+    )
+    assert said.err.count("\n") == 1
+
+
+def test_workers_that_cannot_be_started(tmp_path, monkeypatch):
+    monkeypatch.setattr(distributed, "LocalCluster", refused)
+    said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--workers", "2")
+    assert said.status == 2
+    assert (
+        f"--workers 2: cannot be started ([Errno {errno.ECONNREFUSED}] Connection refused); fewer, or --workers 0, would be right"
+        in said.err
+    )
     assert said.err.count("\n") == 1

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import builtins
+import errno
 import os
 from datetime import datetime
 
 import pytest
 
 from gearwear.errors import InputError
-from gearwear.fleet.keys import Options, key_of
+from gearwear.fleet.keys import Digests, Options, key_of
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.reading import read_fleet, trends
 from gearwear.fleet.store import Store
@@ -66,6 +67,40 @@ def test_killed_before_a_rename_the_scan_is_not_done(store, monkeypatch, stopped
 def test_two_batches_are_not_in_one_store(store):
     with store.opened(), pytest.raises(InputError, match="another batch is at work there"), store.opened():
         pass
+
+
+def test_what_fails_while_a_batch_has_the_store_open_is_no_fault_of_its_folder(store):
+    """As a scheduler that refuses, which was told as a folder that cannot be written to."""
+    with pytest.raises(ConnectionRefusedError), store.opened():
+        raise ConnectionRefusedError(errno.ECONNREFUSED, "Connection refused")
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda store: store.publish(DONE),
+        lambda store: store.publish(Outcome("r", State.REFUSED, why="no points")),
+        lambda store: store.keep_digests(Digests()),
+        lambda store: store.keep_manifest("a.csv", [(row("G1"), "k1", {})]),
+    ],
+    ids=["a scan", "a refusal", "digests", "a manifest"],
+)
+def test_a_full_disk_is_told_as_such(store, monkeypatch, write):
+    def full(path, data):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("gearwear.fleet.store.write_data", full)
+    with pytest.raises(InputError, match=r"--out .*: cannot be written to \(No space left"):
+        write(store)
+
+
+def test_a_store_that_cannot_be_read_is_told_as_such(store, monkeypatch):
+    def closed(folder):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr("gearwear.fleet.store.os.scandir", closed)
+    with pytest.raises(InputError, match=r"cannot be read \(Permission denied\)"):
+        store.states()
 
 
 def test_a_folder_that_is_none_of_a_fleet_is_refused(tmp_path):

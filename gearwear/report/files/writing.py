@@ -38,10 +38,11 @@ def check_folder(out: Path) -> None:
         if not os.access(existing, os.W_OK | os.X_OK):
             raise PermissionError(errno.EACCES, "Permission denied")
     except OSError as error:
-        raise _unwritable(out, error) from None
+        raise unwritable(out, error) from None
 
 
-def _unwritable(out: Path, error: OSError) -> InputError:
+def unwritable(out: Path, error: OSError) -> InputError:
+    """What to say of a folder that cannot be written to."""
     return InputError(
         f"--out {out}: cannot be written to ({error.strerror or error}); free space and the right to write are needed"
     )
@@ -83,7 +84,7 @@ def output_folder(out: Path) -> Iterator[Path]:
                 _publish(hidden, out)
         new_folders = []
     except OSError as error:
-        raise _unwritable(out, error) from None
+        raise unwritable(out, error) from None
     finally:
         shutil.rmtree(hidden, ignore_errors=True)
         for folder in new_folders:  # innermost first
