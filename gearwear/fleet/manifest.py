@@ -22,6 +22,8 @@ NEEDS = "a table (CSV) with the columns gear_id, design, scans, and any of inspe
 MOST_BYTES = 200_000_000
 MOST_CYCLES = 1e15
 """Revolutions; no gear comes near, and squares of what is far larger have no number."""
+FIRST_YEAR, LAST_YEAR = 1900, 2200
+"""Within which a scan is dated: what lies outside is a slip of the pen, and leaves the calendar no room for a forecast."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -202,7 +204,7 @@ def _row(line: int, cells: dict[str, str]) -> ManifestRow:
         gear_id=readable(cells["gear_id"]),
         design=cells["design"],
         scans=scans,
-        inspected=_moment(cells.get("inspected", "")),
+        inspected=read_moment(cells.get("inspected", "")),
         part=one_of("part", PARTS) or None,
         units=one_of("units", UNITS) or "mm",
         before=_files(cells.get("before", "")),
@@ -217,7 +219,14 @@ def _files(text: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in text.split(";") if part.strip())
 
 
-def _moment(text: str) -> datetime | None:
+def read_moment(text: str) -> datetime | None:
+    """A date as a manifest writes it, with a time or without; None where nothing stands.
+
+    Raises
+    ------
+    InputError
+        If it is none, has a zone, or lies outside `FIRST_YEAR` to `LAST_YEAR`.
+    """
     if not text:
         return None
     try:
@@ -228,6 +237,8 @@ def _moment(text: str) -> datetime | None:
         ) from None
     if moment.tzinfo is not None:
         raise InputError(f"inspected = {text[:40]!r}: local time without a zone would be right, all in the same")
+    if not FIRST_YEAR <= moment.year <= LAST_YEAR:
+        raise InputError(f"inspected = {text[:40]!r}: a year from {FIRST_YEAR} to {LAST_YEAR} would be right")
     return moment
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 
 from markupsafe import Markup
 
 from gearwear.fleet.conformity import COVERAGE, Conformity
 from gearwear.fleet.gauge import Repeat, Scatter
-from gearwear.fleet.trend import CYCLES, SECONDS, GearTrend, Point, Trend
+from gearwear.fleet.trend import CYCLES, GearTrend, Point, Trend
 
 WIDTH, HEIGHT = 132.0, 58.0
 """Of a small chart, in its own units; the page says how large one is."""
@@ -26,6 +26,8 @@ ROOM = 1.15
 """Height of a chart over its limit."""
 TALLEST = 1.6
 """Largest height of a chart over its limit; what lies beyond stands at the edge."""
+DAY_0, DAY = datetime(1970, 1, 1), timedelta(1)
+"""From which days are counted along x, and one of them; in no zone, so that the clock of this machine does not move them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +82,7 @@ def place_of(point: Point, clock: str) -> float | None:
     """Where an inspection stands along x."""
     if clock == CYCLES:
         return point.cycles
-    return None if point.inspected is None else point.inspected.timestamp() / SECONDS
+    return None if point.inspected is None else (point.inspected - DAY_0) / DAY
 
 
 def _top(point: Point) -> float:
@@ -134,7 +136,7 @@ def _ticks(name: str, scales: Scales) -> list[str]:
 
 
 def _date(days: float) -> str:
-    return datetime.fromtimestamp(days * SECONDS).date().isoformat()
+    return (DAY_0 + days * DAY).date().isoformat()
 
 
 def _line(trend: Trend, scales: Scales) -> list[str]:

@@ -25,7 +25,7 @@ from pathlib import Path
 from gearwear.design.limits import LIMIT_KEYS, MOST
 from gearwear.errors import InputError
 from gearwear.fleet.keys import Digests, digests_text, parse_digests
-from gearwear.fleet.manifest import MOST_CYCLES, ManifestRow
+from gearwear.fleet.manifest import MOST_CYCLES, ManifestRow, read_moment
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.report.files.locking import tried
 from gearwear.report.files.writing import HIDDEN, check_folder, unwritable, write_data
@@ -205,6 +205,7 @@ def _listed(file: Path) -> Iterator[Listed]:
                     raise ValueError("a row without key or gear_id, or longer than its head")
                 limits = {name: value for name in LIMIT_KEYS if (value := _number(record.pop(f"limit_{name}", ""), MOST))}
                 _number(record.get("cycles_run", ""), MOST_CYCLES)
+                read_moment(record.get("inspected", ""))
                 yield Listed(record.pop("key"), record, limits)
     except (OSError, ValueError, csv.Error) as error:
         raise InputError(

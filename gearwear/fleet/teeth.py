@@ -114,9 +114,9 @@ def _marks(rows: Iterable[Mapping[str, Any]]) -> dict[str, StoredMark]:
     }
 
 
-def _when(row: Mapping[str, Any]) -> tuple[float, float, str, str]:
+def _when(row: Mapping[str, Any]) -> tuple[datetime, float, str, str]:
     inspected, cycles = row["inspected"], row["cycles_run"]
-    moment = np.inf if inspected is None else inspected.timestamp()
+    moment = datetime.max if inspected is None else inspected
     return moment, np.inf if cycles is None else cycles, row["operator"] or "", row["repeat"] or ""
 
 

@@ -167,7 +167,10 @@ class Trend:
         """The date so many days after the last inspection; None where there is none or it is out of reach."""
         if self.last.inspected is None or not days < 100.0 * 365.25:
             return None
-        return self.last.inspected + timedelta(days)
+        try:
+            return self.last.inspected + timedelta(days)
+        except OverflowError:  # beyond what a calendar holds
+            return None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -294,9 +297,9 @@ def points_of(readings: Iterable[Reading]) -> tuple[Point, ...]:
     for reading in readings:
         together.setdefault((reading.inspected, reading.cycles), []).append(reading)
 
-    def order(place: tuple[datetime | None, float | None]) -> tuple[float, float]:
+    def order(place: tuple[datetime | None, float | None]) -> tuple[datetime, float]:
         inspected, cycles = place
-        return (math.inf if inspected is None else inspected.timestamp(), math.inf if cycles is None else cycles)
+        return (datetime.max if inspected is None else inspected, math.inf if cycles is None else cycles)
 
     return tuple(_point(*place, together[place]) for place in sorted(together, key=order))
 

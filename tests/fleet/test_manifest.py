@@ -57,6 +57,8 @@ HEAD = "gear_id,inspected,design,scans,part,units,cycles_run,repeat\n"
     (HEAD + "G,,d.toml,;,,,,\n", "line 2: scans = ';': at least one file"),
     (HEAD + "G,1.3.2026,d.toml,s.ply,,,,\n", "line 2: inspected = '1.3.2026': a date as 2026-03-01"),
     (HEAD + "G,2026-03-01T10:00+01:00,d.toml,s.ply,,,,\n", "local time without a zone"),
+    (HEAD + "G,0001-01-01,d.toml,s.ply,,,,\n", "line 2: inspected = '0001-01-01': a year from 1900 to 2200 would be right"),
+    (HEAD + "G,9999-12-30T23:00,d.toml,s.ply,,,,\n", "line 2: inspected = '9999-12-30T23:00': a year from 1900 to 2200"),
     (HEAD + "G,,d.toml,s.ply,wheel,,,\n", "line 2: part = 'wheel': pinion, gear or nothing"),
     (HEAD + "G,,d.toml,s.ply,,yd,,\n", "line 2: units = 'yd': mm, cm, m, um, in or nothing"),
     (HEAD + "G,,d.toml,s.ply,,,many,\n", "line 2: cycles_run = 'many': a number from 0 on"),

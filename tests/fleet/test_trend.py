@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from gearwear.fleet.conformity import Conformity
+from gearwear.fleet.panels import scales_of, trend_panel
 from gearwear.fleet.trend import CYCLES, DAYS, Reading, by_urgency, gear_trend, points_of, with_significance
 from gearwear.fleet.words import state_words, verdict_words
 
@@ -46,6 +47,20 @@ def test_without_cycles_the_clock_is_the_calendar():
     trend = gear_trend("G1", readings([0.01, 0.02, 0.03], cycles=False), {"wear_depth_mm": 0.05}).trends["wear_depth_mm"]
     assert (trend.clock, trend.line.slope) == (DAYS, pytest.approx(0.01 / 60))
     assert trend.days_left.value == pytest.approx(120.0)
+
+
+@pytest.mark.parametrize("first", [datetime.min, datetime(1900, 1, 1), datetime(2200, 10, 30), datetime(9999, 10, 30)])
+def test_at_either_end_of_the_calendar_charts_are_drawn_and_a_date_beyond_is_none(first):
+    """A list with the year 1 or 9999 is refused; a table may hold one all the same."""
+    last = first + timedelta(60)
+    given = [replace(one, inspected=day, cycles=None) for one, day in zip(readings([0.0, 0.02]), (first, last), strict=True)]
+    gear = gear_trend("G1", given, {"wear_depth_mm": 0.1})
+    trend = gear.trends["wear_depth_mm"]
+    assert trend.days_left.value == pytest.approx(240.0)
+    reached = trend.date(trend.days_left.value)
+    assert reached is None if first.year == 9999 else abs(reached - last - timedelta(240)) < timedelta(seconds=1)
+    chart = trend_panel(trend, scales_of([gear]))
+    assert f">{first.date()}<" in chart and f">{last.date()}<" in chart
 
 
 def test_cycles_that_do_not_grow_are_no_clock():
