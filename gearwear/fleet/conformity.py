@@ -19,6 +19,10 @@ class Conformity(StrEnum):
     """Neither can be proven: the limit lies within the uncertainty."""
 
 
+GOOD_TO_BAD = (Conformity.CONFORMING, Conformity.NEITHER, Conformity.NOT_CONFORMING)
+"""Which of several decides."""
+
+
 def conformity(value: float, std: float, limit: float, low: float = math.nan, high: float = math.nan) -> Conformity:
     """Whether a number keeps an upper limit.
 
@@ -61,8 +65,7 @@ def worst(judged: Iterable[Conformity]) -> Conformity | None:
     >>> str(worst([Conformity.CONFORMING, Conformity.NEITHER]))
     'neither'
     """
-    order = (Conformity.CONFORMING, Conformity.NEITHER, Conformity.NOT_CONFORMING)
-    return max(judged, key=order.index, default=None)
+    return max(judged, key=GOOD_TO_BAD.index, default=None)
 
 
 def exit_status(judged: Iterable[Conformity]) -> int:

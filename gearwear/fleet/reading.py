@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
 from gearwear.fleet.gauge import GaugeStudy, Repeat, gauge_study, in_accord
-from gearwear.fleet.manifest import shown_time
+from gearwear.fleet.manifest import read_moment, shown_time
+from gearwear.fleet.order import Occasion, order_of
 from gearwear.fleet.outcome import State
 from gearwear.fleet.quantities import GEAR, MARK, PATTERN, TOOTH
 from gearwear.fleet.store import Listed, Store
@@ -82,8 +84,7 @@ def trends(fleet: StoredFleet) -> list[GearTrend]:
 
 
 def _gear(fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Sequence[dict[str, Any]]) -> GearTrend:
-    latest = max(rows, key=_when)
-    last = [row for row in rows if _when(row) == _when(latest)]
+    inspections = _inspections(rows)
     states = {row.key: fleet.states.get(row.key) for row in rows}
     notes = []
     for state, words in ((State.REFUSED, "refused"), (State.FAILED, "failed"), (None, "not compared yet")):
@@ -95,21 +96,47 @@ def _gear(fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Seq
         notes.append(f"{len(lost)} of {len(rows)} scans left out: their registration did not settle")
     doubtful = doubt(scan for scan in fleet.scans.values() if scan.gear_id == gear_id)
     notes += [doubtful] if doubtful else []
-    readings = [
-        Reading(
-            gear_id=gear_id, quantity=row["quantity"], value=row["value"], std=_known(row["std"]), inspected=row["inspected"],
-            cycles=row["cycles_run"], low=_known(row["low"]), high=_known(row["high"]),
-        )
-        for row in numbers
-        if row["key"] not in lost
-    ]  # fmt: skip
-    unknown = all(states[row.key] is not State.DONE or row.key in lost for row in last)
-    return gear_trend(gear_id, readings, latest.limits, notes, unknown)
+    readings = [_reading(row, inspections) for row in numbers if row["key"] not in lost]
+    last = order_of(inspections.values()).last
+    limits = _strictest(row.limits for row in rows if inspections[row.key] in last)
+    return gear_trend(gear_id, readings, limits, notes, inspections.values())
 
 
-def _when(row: Listed) -> tuple[str, float]:
-    """For finding a gear's last inspection."""
-    return row.cells.get("inspected", ""), float(row.cells.get("cycles_run") or 0.0)
+def _inspections(rows: Sequence[Listed]) -> dict[str, Occasion]:
+    """At which inspection each scan of a gear was, by key.
+
+    Scans with the same date and cycles are of one. Those with neither are, where operator and repeat tell them apart: else nothing says that
+    they are repeats, and each may be another.
+    """
+    inspections: dict[str, Occasion] = {}
+    seen: Counter[tuple[str, str]] = Counter()
+    for row in rows:
+        moment, run = read_moment(row.cells.get("inspected", "")), row.cells.get("cycles_run", "")
+        one = Occasion(moment, float(run) if run else None)
+        if one == Occasion():
+            who = row.cells.get("operator", ""), row.cells.get("repeat", "")
+            one = Occasion(which=seen[who])
+            seen[who] += 1
+        inspections[row.key] = one
+    return inspections
+
+
+def _reading(row: Mapping[str, Any], inspections: Mapping[str, Occasion]) -> Reading:
+    """From a row of a table."""
+    inspection = inspections.get(row["key"], Occasion(row["inspected"], row["cycles_run"]))
+    return Reading(
+        gear_id=row["gear_id"], quantity=row["quantity"], value=row["value"], std=_known(row["std"]), inspected=inspection.inspected,
+        cycles=inspection.cycles, which=inspection.which, low=_known(row["low"]), high=_known(row["high"]),
+    )  # fmt: skip
+
+
+def _strictest(limits: Iterable[Mapping[str, float]]) -> dict[str, float]:
+    """The smallest limit of each quantity, of several designs."""
+    strictest: dict[str, float] = {}
+    for each in limits:
+        for quantity, limit in each.items():
+            strictest[quantity] = min(limit, strictest.get(quantity, limit))
+    return strictest
 
 
 def _known(value: float | None) -> float:

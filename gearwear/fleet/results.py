@@ -24,7 +24,7 @@ POINT_COLUMNS: dict[str, type] = {
     "gear_id": str, "quantity": str, "inspected": datetime, "cycles_run": float, "scans": int, "value": float, "std": float, "low": float,
     "high": float, "change": float, "change_std": float, "change_p": float, "change_significant": bool,
 }  # fmt: skip
-"""Columns of ``inspections.csv``: a row for each gear, quantity and inspection; the change is from the one before."""
+"""Columns of ``inspections.csv``: a row for each gear, quantity and inspection; the change is from the one before, where their order is known."""
 
 _PARTS = ("repeatability", "operator", "interaction", "reproducibility", "gauge", "part", "total")
 GAUGE_COLUMNS: dict[str, type] = {
@@ -89,7 +89,7 @@ def point_rows(gears: Iterable[GearTrend]) -> list[dict[str, Any]]:
                     "gear_id": gear.gear_id, "quantity": trend.quantity, "inspected": point.inspected, "cycles_run": point.cycles,
                     "scans": point.scans, "value": point.value, "std": point.std, "low": point.low, "high": point.high,
                 }  # fmt: skip
-                if i:
+                if i and trend.steps:
                     row |= _change(trend.steps[i - 1])
                 rows.append({name: row.get(name) for name in POINT_COLUMNS})
     return rows

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
@@ -12,7 +12,9 @@ import numpy as np
 
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern, marked_ways, match_teeth
 from gearwear.design.side import Side
+from gearwear.fleet.order import Occasion, order_of
 
+Rows = list[Mapping[str, Any]]
 FLANKS = [str(side) for side in Side]
 TEETH_COLUMNS: dict[str, type] = {
     "gear_id": str, "inspected": datetime, "cycles_run": float, "operator": str, "repeat": str, "quantity": str, "tooth": int, "flank": str,
@@ -44,12 +46,15 @@ class NumberedScan:
         Of the gear.
     same : SameTeeth
         Against the gear's first scan.
+    place : int
+        Of its inspection among the gear's.
     """
 
     key: str
     gear_id: str
     teeth: int
     same: SameTeeth
+    place: int = 0
 
     def in_first(self, tooth: int, flank: str) -> tuple[int, str]:
         """A tooth, counted from 1, and a flank ("": none) of this scan's report, as the first scan's report calls them."""
@@ -75,25 +80,25 @@ def numbered_scans(rows: Iterable[Mapping[str, Any]], mark_rows: Iterable[Mappin
     dict of str to NumberedScan
         By key; scans of which the store holds no patterns, and such as have another number of teeth than the first, are left out.
     """
-    by_scan: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    by_gear: dict[str, dict[str, Rows]] = {}
     for row in rows:
-        by_scan.setdefault((row["gear_id"], row["key"]), []).append(row)
+        by_gear.setdefault(row["gear_id"], {}).setdefault(row["key"], []).append(row)
     marks = _marks(mark_rows)
     first: dict[str, tuple[str, Sequence[TeethPattern]]] = {}
     numbered: dict[str, NumberedScan] = {}
-    for (gear_id, key), scan_rows in sorted(by_scan.items(), key=lambda item: (item[0][0], _when(item[1][0]), item[0][1])):
+    for gear_id, place, key, scan_rows in _in_order(by_gear):
         patterns = _patterns(scan_rows)
         teeth = len(patterns[0].values)
         if gear_id not in first:
             first[gear_id] = key, patterns
-            numbered[key] = NumberedScan(key, gear_id, teeth, SameTeeth(0, False, 1.0))
+            numbered[key] = NumberedScan(key, gear_id, teeth, SameTeeth(0, False, 1.0), place)
             continue
         first_key, theirs = first[gear_id]
         if [pattern.values.shape for pattern in theirs] == [pattern.values.shape for pattern in patterns]:
             marked = None
             if first_key in marks and key in marks:
                 marked = marked_ways(marks[first_key], marks[key], marks[first_key].angle, teeth)
-            numbered[key] = NumberedScan(key, gear_id, teeth, match_teeth(theirs, patterns, marked=marked))
+            numbered[key] = NumberedScan(key, gear_id, teeth, match_teeth(theirs, patterns, marked=marked), place)
     return numbered
 
 
@@ -114,10 +119,18 @@ def _marks(rows: Iterable[Mapping[str, Any]]) -> dict[str, StoredMark]:
     }
 
 
-def _when(row: Mapping[str, Any]) -> tuple[datetime, float, str, str]:
-    inspected, cycles = row["inspected"], row["cycles_run"]
-    moment = datetime.max if inspected is None else inspected
-    return moment, np.inf if cycles is None else cycles, row["operator"] or "", row["repeat"] or ""
+def _in_order(by_gear: Mapping[str, Mapping[str, Rows]]) -> Iterator[tuple[str, int, str, Rows]]:
+    """Gear, place of the inspection, key and rows of each scan, gear by gear in the order of its inspections."""
+    for gear_id, scans in sorted(by_gear.items()):
+        at = {key: Occasion(rows[0]["inspected"], rows[0]["cycles_run"]) for key, rows in scans.items()}
+        places = order_of(at.values()).places
+        for place, _, key in sorted((places[at[key]], _who(rows[0]), key) for key, rows in scans.items()):
+            yield gear_id, place, key, scans[key]
+
+
+def _who(row: Mapping[str, Any]) -> tuple[str, str]:
+    """Tells scans of one inspection apart."""
+    return row["operator"] or "", row["repeat"] or ""
 
 
 def _patterns(rows: Sequence[Mapping[str, Any]]) -> list[TeethPattern]:
@@ -162,7 +175,11 @@ def tooth_rows(numbers: Iterable[Mapping[str, Any]], scans: Mapping[str, Numbere
                 "turned_teeth": same.turned, "upside_down": same.flipped, "probability": same.probability, "told_by": ", ".join(same.told_by),
             }
         )  # fmt: skip
-    numbered.sort(key=lambda row: (row["gear_id"], row["quantity"], row["tooth"], row["flank"], _when(row), row["key"]))
+
+    def place(row: Mapping[str, Any]) -> tuple[Any, ...]:
+        return row["gear_id"], row["quantity"], row["tooth"], row["flank"], scans[row["key"]].place, _who(row), row["key"]
+
+    numbered.sort(key=place)
     return [{name: row[name] for name in TEETH_COLUMNS} for row in numbered]
 
 

@@ -10,8 +10,9 @@ from itertools import compress, pairwise
 
 import numpy as np
 
-from gearwear.fleet.conformity import Conformity, conformity, worst
+from gearwear.fleet.conformity import GOOD_TO_BAD, Conformity, conformity, worst
 from gearwear.fleet.line import FittedLine, Reach, fit_line, line_from_new, reaches
+from gearwear.fleet.order import Occasion, Order, order_of
 from gearwear.fleet.significance import discoveries, two_sided
 
 QUANTITIES = (
@@ -44,6 +45,8 @@ class Reading:
     inspected : datetime or None
     cycles : float or None
         Run since new.
+    which : int
+        As in `Occasion`.
     low, high : float
         Within what limits the number lies where more than scatter is open; else nan.
     """
@@ -54,8 +57,13 @@ class Reading:
     std: float
     inspected: datetime | None = None
     cycles: float | None = None
+    which: int = 0
     low: float = math.nan
     high: float = math.nan
+
+    @property
+    def inspection(self) -> Occasion:
+        return Occasion(self.inspected, self.cycles, self.which)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +72,7 @@ class Point:
 
     Parameters
     ----------
-    inspected, cycles
+    inspected, cycles, which
         As in `Reading`.
     value, std : float
         Mean of its scans. The standard deviation is theirs, not divided by their number: what repeats alike does not average out; it is the
@@ -80,6 +88,11 @@ class Point:
     low: float
     high: float
     scans: int
+    which: int = 0
+
+    @property
+    def inspection(self) -> Occasion:
+        return Occasion(self.inspected, self.cycles, self.which)
 
     @property
     def scatter(self) -> float:
@@ -118,10 +131,11 @@ class Trend:
     ----------
     gear_id, quantity : str
     points : tuple of Point
-        In their order.
+        In their order; where it is not known which is the last, the worst of those that may be it comes last.
     clock : {"cycle", "day", ""}
         What the rate is per; "" where there is none.
     steps : tuple of Advance
+        From each point to the next; none where their order is not known.
     line : FittedLine or None
         Over cycles since new, or days since the first inspection.
     from_new : bool
@@ -130,7 +144,7 @@ class Trend:
         Whether the rate is, among all of the fleet's.
     limit : float or None
     conformity : Conformity or None
-        Of the last inspection with the limit; None without one.
+        Of the last inspection with the limit, the worst of those that may be the last; None without one.
     left : Reach or None
         Cycles or days from the last inspection until the line reaches the limit; None without limit or line.
     per_day : float
@@ -153,6 +167,11 @@ class Trend:
     @property
     def last(self) -> Point:
         return self.points[-1]
+
+    @property
+    def inspections(self) -> set[Occasion]:
+        """Those with a value."""
+        return {point.inspection for point in self.points}
 
     @property
     def days_left(self) -> Reach | None:
@@ -206,26 +225,32 @@ class GearTrend:
 
 
 def gear_trend(
-    gear_id: str, readings: Iterable[Reading], limits: Mapping[str, float], notes: Sequence[str] = (), unknown: bool = False
+    gear_id: str,
+    readings: Sequence[Reading],
+    limits: Mapping[str, float],
+    notes: Sequence[str] = (),
+    inspections: Iterable[Occasion] = (),
 ) -> GearTrend:
     """A gear over its inspections.
 
     Parameters
     ----------
     gear_id : str
-    readings : iterable of Reading
+    readings : sequence of Reading
         Of this gear.
     limits : mapping
         By quantity.
     notes : sequence of str
-    unknown : bool
-        Whether its last inspection has no result: then its limits cannot be said to be kept.
+    inspections : iterable of Occasion
+        Those without a result too: where one of them may be the last, the limits cannot be said to be kept.
     """
+    measured = {reading.inspection for reading in readings}
+    order = order_of([*inspections, *measured])
     by_quantity: dict[str, list[Reading]] = {}
     for reading in readings:
         by_quantity.setdefault(reading.quantity, []).append(reading)
     trends = {
-        quantity: _trend(gear_id, quantity, by_quantity[quantity], limits.get(quantity))
+        quantity: _trend(gear_id, quantity, by_quantity[quantity], limits.get(quantity), order)
         for quantity in QUANTITIES
         if quantity in by_quantity
     }
@@ -234,8 +259,13 @@ def gear_trend(
     missing = [quantity for quantity in limits if quantity not in trends]
     if missing and trends:
         remarks.append(f"no value of {', '.join(missing)}, which has a limit")
-    if missing or (unknown and limits):
+    if missing:
         judged.append(Conformity.NEITHER)
+    late = [name for name in limits if name in trends and order.last & measured - trends[name].inspections]
+    if late:
+        remarks.append(f"no value of {', '.join(late)} at the last inspection, which has a limit")
+    if trends and order.note:
+        remarks.append(order.note)
     volume = trends.get("wear_volume_mm3")
     if volume is not None and any(step.value < -3.0 * step.std for step in volume.steps):
         remarks.append("its worn volume fell from one inspection to the next: is it the same gear?")
@@ -291,20 +321,16 @@ def _urgency(trend: Trend) -> tuple[float, float, float]:
     return (beyond, math.inf, math.inf) if reach is None else (beyond, reach.value, reach.low)
 
 
-def points_of(readings: Iterable[Reading]) -> tuple[Point, ...]:
-    """The inspections of one gear and quantity in their order, scans of the same one taken together."""
-    together: dict[tuple[datetime | None, float | None], list[Reading]] = {}
+def points_of(readings: Iterable[Reading], order: Order | None = None) -> tuple[Point, ...]:
+    """The inspections of one gear and quantity in the order of all of the gear's, scans of the same one taken together."""
+    together: dict[Occasion, list[Reading]] = {}
     for reading in readings:
-        together.setdefault((reading.inspected, reading.cycles), []).append(reading)
-
-    def order(place: tuple[datetime | None, float | None]) -> tuple[datetime, float]:
-        inspected, cycles = place
-        return (datetime.max if inspected is None else inspected, math.inf if cycles is None else cycles)
-
-    return tuple(_point(*place, together[place]) for place in sorted(together, key=order))
+        together.setdefault(reading.inspection, []).append(reading)
+    order = order or order_of(together)
+    return tuple(_point(one, together[one]) for one in order.inspections if one in together)
 
 
-def _point(inspected: datetime | None, cycles: float | None, scans: Sequence[Reading]) -> Point:
+def _point(inspection: Occasion, scans: Sequence[Reading]) -> Point:
     values, stds = np.array([scan.value for scan in scans]), np.array([scan.std for scan in scans])
     stated = math.sqrt(float(np.mean(np.square(stds)))) if np.isfinite(stds).all() else math.nan
     seen = float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else 0.0
@@ -314,8 +340,9 @@ def _point(inspected: datetime | None, cycles: float | None, scans: Sequence[Rea
     ]
     open_ = any(math.isfinite(scan.low) or math.isfinite(scan.high) for scan in scans)
     return Point(
-        inspected=inspected,
-        cycles=cycles,
+        inspected=inspection.inspected,
+        cycles=inspection.cycles,
+        which=inspection.which,
         value=float(values.mean()),
         std=max(stated, seen) if math.isfinite(stated) else math.nan,
         low=min(bounds[0]) if open_ else math.nan,
@@ -324,8 +351,8 @@ def _point(inspected: datetime | None, cycles: float | None, scans: Sequence[Rea
     )
 
 
-def _trend(gear_id: str, quantity: str, readings: Sequence[Reading], limit: float | None) -> Trend:
-    points = points_of(readings)
+def _trend(gear_id: str, quantity: str, readings: Sequence[Reading], limit: float | None, order: Order) -> Trend:
+    points, state = _worst_last(points_of(readings, order), limit, order)
     clock, places = _places(points)
     usable = [i for i, point in enumerate(points) if point.scatter > 0.0]
     line, from_new = None, False
@@ -337,20 +364,40 @@ def _trend(gear_id: str, quantity: str, readings: Sequence[Reading], limit: floa
     elif clock == CYCLES and len(usable) == 1 and quantity in NOTHING_AT_FIRST and places[usable[0]] > 0.0:
         point = points[usable[0]]
         line, from_new = line_from_new(places[usable[0]], point.value, point.scatter), True
-    last = points[-1]
     return Trend(
         gear_id=gear_id,
         quantity=quantity,
         points=points,
         clock=clock if line is not None else "",
-        steps=tuple(_step(before, after) for before, after in pairwise(points)),
+        steps=tuple(_step(before, after) for before, after in pairwise(points)) if order.known or clock else (),
         line=line,
         from_new=from_new,
         limit=limit,
-        conformity=None if limit is None else conformity(last.value, last.std, limit, last.low, last.high),
+        conformity=state,
         left=None if limit is None or line is None else reaches(line, limit, places[-1]),
         per_day=_per_day(points),
     )
+
+
+def _worst_last(points: tuple[Point, ...], limit: float | None, order: Order) -> tuple[tuple[Point, ...], Conformity | None]:
+    """The points with the worst of those that may be the last at the end, and how it keeps its limit.
+
+    Where an inspection that may be the last has no value, the limit cannot be said to be kept, and those before it are shown: the last of
+    them, or where their order is not known the worst.
+    """
+
+    def judge(point: Point) -> Conformity | None:
+        return None if limit is None else conformity(point.value, point.std, limit, point.low, point.high)
+
+    def badness(point: Point) -> tuple[int, float]:
+        state = judge(point)
+        return -1 if state is None else GOOD_TO_BAD.index(state), point.value
+
+    may_be = [point for point in points if point.inspection in order.last] or (points[-1:] if order.known else points)
+    last = max(may_be, key=badness)
+    states = [judge(last)] if order.last <= {point.inspection for point in points} else [judge(last), Conformity.NEITHER]
+    state = None if limit is None else worst(filter(None, states))
+    return (*(point for point in points if point is not last), last), state
 
 
 def _places(points: Sequence[Point]) -> tuple[str, list[float]]:
@@ -359,7 +406,7 @@ def _places(points: Sequence[Point]) -> tuple[str, list[float]]:
     if len(cycles) == len(points) and all(after > before for before, after in pairwise(cycles)):
         return CYCLES, cycles
     moments = [point.inspected for point in points if point.inspected is not None]
-    if len(moments) == len(points):
+    if len(moments) == len(points) and moments == sorted(moments):
         return DAYS, [(moment - moments[0]).total_seconds() / SECONDS for moment in moments]
     return "", []
 

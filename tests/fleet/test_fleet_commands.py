@@ -79,6 +79,41 @@ def test_exit_status_for_scripts(tmp_path, depths, limits, status):
     assert run("gauge", store.folder, "--quiet").status == 0
 
 
+def test_a_worn_gear_is_not_called_conforming_by_an_older_scan_without_a_date(tmp_path):
+    """1 µm when new, undated; 500 µm after a million cycles, of 100 µm allowed."""
+    new, worn = (report((0.02 * depth, 0.05), (depth, 4.0), (1e-3 * depth, 0.004)) for depth in (1.0, 500.0))
+    store = store_of(tmp_path / "cycles", [(row("A", None, 0.0), new), (row("A", START, 1e6), worn)], LIMITS)
+    said = run("trend", store.folder)
+    assert said.status == 1 and "1 beyond a limit" in said.out and "!" not in said.out
+    store = store_of(tmp_path / "neither", [(row("A"), new), (row("A", START, 1e6), worn)], LIMITS)
+    said = run("trend", store.folder)
+    assert said.status == 1
+    assert "! which of 2 inspections is the last is not known, the worst counts: 1 of 2" in " ".join(said.out.split())
+    steps = table(store.folder / "trend" / "inspections.csv")
+    assert [(one["value"], one["change"]) for one in steps if one["quantity"] == "wear_depth_mm"] == [("0.001", ""), ("0.5", "")]
+
+
+@pytest.mark.parametrize(("repeats", "status"), [(["1", "2", "3"], 0), (["", "", ""], 3), (["1", "2", "2"], 3)])
+def test_scans_with_neither_date_nor_cycles_are_one_inspection_where_repeats_tell_them_apart(tmp_path, repeats, status):
+    """Their mean is judged then, with what they scatter, 41 ± 39 µm of 121; else the worst, 120 ± 4 µm."""
+    given = [report((1.0, 0.05), (depth, 4.0), (0.05, 0.004)) for depth in (2.0, 2.0, 120.0)]
+    store = store_of(
+        tmp_path / "store",
+        [(row("A", repeat=repeat), one) for repeat, one in zip(repeats, given, strict=True)],
+        {"wear_depth_mm": 0.121},
+    )
+    assert run("trend", store.folder).status == status
+
+
+def test_where_the_last_is_not_known_the_strictest_limit_counts(tmp_path):
+    store = store_of(tmp_path / "store", [*inspections("A", [60]), (row("A"), report(depth=(60.0, 4.0)))], LIMITS)
+    listed = [
+        (row("A", START, 1e6), one.key, {"wear_depth_mm": limit}) for one, limit in zip(store.listed(), (0.1, 0.05), strict=True)
+    ]
+    store.keep_manifest("fleet.csv", [listed[0], (row("A"), *listed[1][1:])])
+    assert run("trend", store.folder).status == 1
+
+
 def test_scans_without_a_result_are_told_of(tmp_path):
     scans = [*inspections("A", [20]), (row("A", START + timedelta(90), 2e6), State.FAILED), (row("C", START), State.REFUSED)]
     scans.append((row("D", START, 1e6), report(converged=False)))

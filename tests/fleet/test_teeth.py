@@ -17,12 +17,12 @@ LAID = [(0, False), (6, False), (4, True)]
 """How each scan must be turned to go with the first."""
 
 
-def stored(folder, own: float, seed: int = 0, laid=LAID, marks=(None, None, None)):
+def stored(folder, own: float, seed: int = 0, laid=LAID, marks=(None, None, None), days=DAYS):
     """Three inspections of one gear whose flanks differ by `own` times what a scan scatters; tooth 4 wears on its left flank."""
     rng = np.random.default_rng(seed)
     place, form = rng.normal(size=(TEETH, 2, 1, 1)), rng.normal(size=(TEETH, 2, 3, 3))
     scans = []
-    for i, (day, (turned, over)) in enumerate(zip(DAYS, laid, strict=True)):
+    for i, (day, (turned, over)) in enumerate(zip(days, laid, strict=True)):
         patterns = [
             TeethPattern(name, own * values + rng.normal(size=values.shape))
             for name, values in (("form and marks", form), ("place", place))
@@ -47,6 +47,16 @@ def test_a_tooth_keeps_its_number(tmp_path):
     ]
     assert [one["flank_in_report"] for one in deep] == ["left", "left", "right"]
     assert not any("doubtful" in note for note in trends(fleet)[0].notes)
+
+
+def test_teeth_are_in_the_order_of_the_trend(tmp_path):
+    """The undated scan, of a new gear by its cycles, is the first: its tooth numbers count, and its rows stand first."""
+    fleet = stored(tmp_path / "store", 3.0, days=[None, *DAYS[1:]])
+    assert [(one.same.turned, one.same.flipped) for one in fleet.scans.values()] == LAID
+    deep = [one for one in fleet.teeth if one["quantity"] == "wear_depth_mm" and one["value"] > 0.0]
+    assert [one["inspected"] for one in deep] == [None, *DAYS[1:]]
+    points = trends(fleet)[0].trends["wear_depth_mm"].points
+    assert [point.inspected for point in points] == [None, *DAYS[1:]]
 
 
 def test_a_gear_without_marks_is_doubtful(tmp_path):

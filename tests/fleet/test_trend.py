@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from gearwear.fleet.conformity import Conformity
+from gearwear.fleet.order import Occasion
 from gearwear.fleet.panels import scales_of, trend_panel
 from gearwear.fleet.trend import CYCLES, DAYS, Reading, by_urgency, gear_trend, points_of, with_significance
 from gearwear.fleet.words import state_words, verdict_words
@@ -104,10 +105,60 @@ def test_what_has_a_limit_and_no_value_cannot_be_said():
     assert "backlash_mm" in gear.notes[0]
 
 
-def test_a_last_inspection_without_result_cannot_be_said():
-    assert gear_trend("G1", readings([0.01]), {"wear_depth_mm": 0.12}, unknown=True).conformity is Conformity.NEITHER
-    assert gear_trend("G1", readings([0.3]), {"wear_depth_mm": 0.12}, unknown=True).conformity is Conformity.NOT_CONFORMING
-    assert gear_trend("G1", readings([0.01]), {}, unknown=True).conformity is None
+@pytest.mark.parametrize(
+    "later", [Occasion(DAY + timedelta(60), 1e6), Occasion(cycles=1e6), Occasion(DAY + timedelta(60)), Occasion()]
+)
+def test_a_last_inspection_without_result_cannot_be_said(later):
+    """Nor where it may be the last: with no date and no cycles nothing says that it is not."""
+    limits = {"wear_depth_mm": 0.12}
+    assert gear_trend("G1", readings([0.01]), limits, inspections=[later]).conformity is Conformity.NEITHER
+    assert gear_trend("G1", readings([0.3]), limits, inspections=[later]).conformity is Conformity.NOT_CONFORMING
+    assert gear_trend("G1", readings([0.01]), {}, inspections=[later]).conformity is None
+    before = Occasion(DAY - timedelta(60), 0.0)
+    assert gear_trend("G1", readings([0.01]), limits, inspections=[before]).conformity is Conformity.CONFORMING
+
+
+def test_a_worn_gear_is_not_judged_by_an_older_scan():
+    """Cycles say which scan is the last where a date is missing; where nothing says it, the worst of those that may be it."""
+    (new, worn), limits = readings([0.001, 0.5]), {"wear_depth_mm": 0.1}
+    for undated in ([replace(new, inspected=None), worn], [new, replace(worn, inspected=None)]):
+        gear = gear_trend("G1", undated, limits)
+        assert (gear.conformity, gear.notes) == (Conformity.NOT_CONFORMING, ())
+        trend = gear.trends["wear_depth_mm"]
+        assert (trend.last.value, trend.clock, trend.steps[0].value) == (0.5, CYCLES, pytest.approx(0.499))
+    nothing = {"inspected": None, "cycles": None}
+    for open_ in (
+        [replace(new, **nothing), worn],
+        [new, replace(worn, **nothing)],
+        [replace(new, cycles=None), replace(worn, inspected=None)],
+    ):
+        gear = gear_trend("G1", open_, limits)
+        trend = gear.trends["wear_depth_mm"]
+        assert gear.conformity is trend.conformity is Conformity.NOT_CONFORMING
+        assert (trend.last.value, trend.steps, trend.line, trend.left) == (0.5, (), None, None)
+        assert gear.notes[0].startswith("which of 2 inspections is the last is not known, the worst counts: 1 of 2 without ")
+        near = [replace(one, value=0.5 * one.value) if one.value == 0.5 else one for one in open_]
+        assert gear_trend("G1", near, {"wear_depth_mm": 0.25}).conformity is Conformity.NEITHER
+        assert gear_trend("G1", near, {"wear_depth_mm": 0.30}).conformity is Conformity.CONFORMING
+
+
+def test_a_scan_that_is_surely_older_does_not_count():
+    """Without a date, but with fewer cycles; what comes before the last stays open, and no change is given."""
+    first, second, third = readings([0.5, 0.02, 0.03])
+    gear = gear_trend("G1", [replace(first, inspected=None), replace(second, cycles=None), third], {"wear_depth_mm": 0.1})
+    assert gear.conformity is Conformity.CONFORMING
+    assert gear.trends["wear_depth_mm"].steps == ()
+    assert gear.notes == (
+        "the order of the inspections before the last is not known: 1 of 3 without inspected, 1 of 3 without cycles_run",
+    )
+
+
+def test_what_was_not_measured_at_the_last_inspection_cannot_be_said():
+    limits = {"backlash_mm": 0.2}
+    earlier, later = readings([0.05], quantity="backlash_mm"), readings([0.01, 0.02])[1:]
+    gear = gear_trend("G1", [*earlier, *later], limits)
+    assert gear.conformity is Conformity.NEITHER
+    assert gear.notes == ("no value of backlash_mm at the last inspection, which has a limit",)
 
 
 def test_a_gear_that_gains_metal_is_doubted():
@@ -148,11 +199,11 @@ def test_among_gears_that_do_not_wear_few_rates_are_significant():
 def test_gears_without_a_result_are_said_by_name_and_not_judged():
     limits = {"wear_depth_mm": 0.1}
     worn = gear_trend("worn", readings([0.01, 0.02]), limits)
-    refused = gear_trend("G-17", [], {}, ["its scan was refused"], unknown=True)
-    limited = gear_trend("G-18", [], limits, unknown=True)
+    refused = gear_trend("G-17", [], {}, ["its scan was refused"])
+    limited = gear_trend("G-18", [], limits)
     assert verdict_words([worn, refused, limited]) == "3 gears: 1 within all limits; no scan of G-17 and G-18 gave a result."
     assert verdict_words([refused]) == "1 gear: no scan of G-17 gave a result."
-    many = [gear_trend(f"G{i}", [], limits, unknown=True) for i in range(8)]
+    many = [gear_trend(f"G{i}", [], limits) for i in range(8)]
     assert verdict_words(many) == "8 gears: no scan of G0, G1, G2, G3, G4 and 3 more gave a result."
     free = gear_trend("free", readings([0.01, 0.02]), {})
     assert verdict_words([free, refused]).endswith("the designs set no limits; no scan of G-17 gave a result.")
