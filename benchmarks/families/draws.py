@@ -8,7 +8,21 @@ from typing import Any
 import numpy as np
 
 from benchmarks.families.breakage import Cut, roughness
-from benchmarks.families.fields import Burr, Field, Frame, Hollow, Index, Pits, Polynomial, Ripple, RoundWave, Scores, Sliding
+from benchmarks.families.fields import (
+    Burr,
+    EachFlank,
+    EndRelief,
+    Field,
+    Frame,
+    Hollow,
+    Index,
+    Pits,
+    Polynomial,
+    Ripple,
+    RoundWave,
+    Scores,
+    Sliding,
+)
 from benchmarks.families.gear import GearNumbers
 from benchmarks.families.part import Part
 from benchmarks.families.rack import Tool
@@ -121,6 +135,21 @@ def as_cut(rng: Rng, f: Frame, quality: int) -> tuple[Field, ...]:
         Index(tuple((arcs - arcs.mean()).tolist())),
         RoundWave(float(rng.uniform(0.3, 1.0)) * pitch, 1.0, float(rng.uniform(0.0, 2.0 * math.pi))),
     )
+
+
+def each_flank(rng: Rng, f: Frame, quality: int) -> tuple[Field, ...]:
+    """What `as_cut` draws, and every flank besides as itself: left and right pitch go their own ways, slopes and leads differ from flank to flank; on half of
+    the gears the ends are relieved."""
+    grade, d = 1e-3 * math.sqrt(2.0) ** (quality - 5), f.module * f.teeth
+    pitch, slope, helix = 0.4 * f.module + 0.001 * d + 5.0, 0.4 * f.module + 4.0, 0.35 * math.sqrt(f.width) + 4.0
+
+    def drawn(size: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        left, right = (size * grade * rng.standard_normal((2, f.teeth))).tolist()
+        return tuple(left), tuple(right)
+
+    flanks = EachFlank(drawn(0.35 * pitch), drawn(0.2 * slope), drawn(0.2 * helix))
+    ends = (EndRelief(float(rng.uniform(0.008, 0.02)), float(rng.uniform(0.06, 0.15)) * f.width),) if rng.random() < 0.5 else ()
+    return (*as_cut(rng, f, quality), flanks, *ends)
 
 
 def texture(rng: Rng, scale: float = 1.0) -> Texture | None:

@@ -376,8 +376,18 @@ def _as_drawn(rng: Rng, points: int) -> dict[str, Any]:
 
 def _as_cut(rng: Rng, points: int) -> dict[str, Any]:
     """Errors of class 6 to 10 that the drawing does not tell: right to name are those that are there, and none need be."""
+    return _cut_and_worn(rng, points, 6, draws.as_cut)
+
+
+def _each_flank(rng: Rng, points: int) -> dict[str, Any]:
+    """The same of class 5 to 9, with every flank cut as itself besides."""
+    return _cut_and_worn(rng, points, 5, draws.each_flank)
+
+
+def _cut_and_worn(rng: Rng, points: int, best: int, cut: Callable[[Rng, draws.Frame, int], tuple[Field, ...]]) -> dict[str, Any]:
+    """A gear of one of five classes, the `best` first; unworn, or worn in patches, on one side or both."""
     g, tools, f = _plain(rng)
-    quality = int(rng.integers(6, 11))
+    quality = int(rng.integers(best, best + 5))
     what = str(rng.choice(["unworn", "patches", "one side", "both sides"]))
     side, depth = int(rng.choice([-1, 1])), log_uniform(rng, 0.006, 0.03) * g.module
     match what:
@@ -394,11 +404,11 @@ def _as_cut(rng: Rng, points: int) -> dict[str, Any]:
         del design["rack_tip_radius"]
     scanner = draws.scanner(rng, g, points)
     there = (
-        "pitch", "tooth_thickness", "profile_shift", "profile_slope", "profile_crowning", "helix_slope", "helix_crowning", "taper", "twist",
-        "eccentricity", "axis_offset_lateral",
+        "pitch", "thickness_variation", "tooth_thickness", "profile_shift", "profile_slope", "profile_crowning", "helix_slope", "helix_crowning", "taper",
+        "twist", "eccentricity", "axis_offset_lateral",
     )  # fmt: skip
     return {
-        "what": what, "part": Part(g, tools, draws.as_cut(rng, f, quality), wear), "design": design, "scanner": scanner,
+        "what": what, "part": Part(g, tools, cut(rng, f, quality), wear), "design": design, "scanner": scanner,
         "may_name": (*there, *_also(scanner)), "near": ("tip_relief", "root_relief", "end_relief"), "outside": f"form errors of class {quality}",
     }  # fmt: skip
 
@@ -497,4 +507,5 @@ FAMILIES: Mapping[str, Family] = {
     "o": Family("class 6 to 10 as cut", _as_cut),
     "p": Family("some flanks worn all over", _some_flanks),
     "q": Family("several files, one of them wrong", _files),
+    "r": Family("class 5 to 9, every flank cut as itself", _each_flank),
 }

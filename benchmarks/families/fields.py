@@ -138,6 +138,22 @@ class Index:
 
 
 @dataclass(frozen=True)
+class EachFlank:
+    """Every flank cut as itself: off its place along the base tangent, with a slope along the profile and one along the face; left flanks, then right."""
+
+    places: tuple[tuple[float, ...], tuple[float, ...]]
+    slopes: tuple[tuple[float, ...], tuple[float, ...]]
+    leans: tuple[tuple[float, ...], tuple[float, ...]]
+
+    def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
+        which = np.where(side > 0, 0, 1), tooth.astype(int)
+        place, slope, lean = (np.asarray(amounts)[which] for amounts in (self.places, self.slopes, self.leans))
+        share = (roll - f.form) / (f.tip - f.form) - 0.5
+        moved: Array = side * place + slope * share + lean * (z / f.width - 0.5)
+        return moved
+
+
+@dataclass(frozen=True)
 class FeedMarks:
     """A wave along z."""
 

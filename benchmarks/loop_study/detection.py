@@ -235,5 +235,6 @@ def visibilities(scenario: Scenario, scan: SyntheticScan, fitted: Fitted, gear: 
 
 def freedoms(effect: Effect, gear: Gear) -> int:
     """Amplitudes and shape values of an effect."""
-    own = {"pitch": gear.teeth - 1, "profile_slope": 2, "scale_anisotropic": 2, "turntable_angle": 3, "feed_marks": 3}
+    of_teeth = dict.fromkeys(("pitch", "thickness_variation"), gear.teeth - 1)
+    own = of_teeth | {"profile_slope": 2, "scale_anisotropic": 2, "turntable_angle": 3, "feed_marks": 3}
     return own.get(effect.name, 2 if "start_mm" in effect.parameters or "start_deg" in effect.parameters else 1)

@@ -61,12 +61,13 @@ def as_found(effect: Effect, placement: Placement, outline: Outline, pose: Rigid
             return {name: -float(value) for name, value in p.items()} if flip else p  # type: ignore[arg-type]
         case "profile_slope" if flip:
             return {"left_um": p["right_um"], "right_um": p["left_um"]}
-        case "pitch":
-            index = np.asarray(p["index_um"])
-            found = np.zeros_like(index)
-            for tooth, value in enumerate(index):
-                found[placement.flank(tooth, 1, len(index))[0]] = -value if flip else value
-            return {"index_um": tuple(found.tolist())}
+        case "pitch" | "thickness_variation":
+            ((name, amounts),) = p.items()
+            given = np.asarray(amounts)
+            found = np.zeros_like(given)
+            for tooth, value in enumerate(given):
+                found[placement.flank(tooth, 1, len(given))[0]] = -value if flip and effect.name == "pitch" else value
+            return {name: tuple(found.tolist())}
         case "turntable_angle":
             turned = effect["order"] * shift
             phase = 180.0 - turned - effect["phase_deg"] if flip else effect["phase_deg"] - turned

@@ -34,7 +34,7 @@ class OpenVolume:
 
     @property
     def limits(self) -> tuple[float, float, str] | None:
-        """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
+        """Within what limits the worn volume lies, mm³, its own 95 % interval with them, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
         which sides are worn throughout, what each answer would be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 %
         interval, wear too faint to be found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all teeth that nothing explains, and teeth thinner than drawn.
         None where nothing does."""
@@ -76,6 +76,8 @@ class OpenVolume:
         if open_ is not None and not self.unworn_seen:
             low, high = low - open_, high + open_
             causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
+        own = NORMAL_95 * self.found.volume_std
+        low, high = min(low, self.found.volume - own), max(high, self.found.volume + own)
         return (max(low, 0.0), high, "; ".join(causes)) if causes else None
 
     @property

@@ -81,8 +81,10 @@ class Registration(Card):
         Scatter of points inside cells, mm.
     fitting : float
         Share of points that lie on the design.
-    doubts : tuple of str
-        What a reader must know of how it was found, each a sentence.
+    unsettled : tuple of str
+        What puts it in doubt, each a sentence.
+    unseen : tuple of str
+        What it had to assume besides its datum.
     without : tuple of (Side, (6,) float)
         For each side that may be worn, how the pose moves if its flanks are no datum, mm and rad.
     """
@@ -96,13 +98,14 @@ class Registration(Card):
     bands: Bands
     noise: float
     fitting: float
-    doubts: tuple[str, ...]
+    unsettled: tuple[str, ...]
+    unseen: tuple[str, ...]
     without: tuple[tuple[Side, Floats], ...] = ()
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Doubts and assumptions, each a sentence."""
-        return (*self.doubts, *self.datum.notes)
+        return (*self.unsettled, *self.datum.notes, *self.unseen)
 
     def headline(self) -> str:
         settled = "settled" if self.converged else "did not settle"
@@ -369,19 +372,30 @@ def _known(
     without = tuple((side, _motion_without(cells, datum, side, free)) for side in datum.doubtful)
     farthest = max((motion for _, motion in without), key=lambda motion: abs(motion[5]), default=np.zeros(6))
     covariance = covariance + np.outer(farthest, farthest)
-    doubts = []
+    unsettled, unseen = list[str](), list[str]()
     if fitting < 0.8:
-        doubts.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
+        unsettled.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
     if not observed[2] and not planar:
-        unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
+        height = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
         if has_screw(gear):
-            unseen += "; along helical teeth height and turn go together, and the turn is stated for this height"
-        doubts.append(unseen)
+            height += "; along helical teeth height and turn go together, and the turn is stated for this height"
+        unseen.append(height)
     converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
     if not converged:
-        doubts.insert(0, f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
+        unsettled.insert(0, f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
     return Registration(
-        pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(doubts), without
+        pose,
+        converged,
+        covariance,
+        observed,
+        datum,
+        offset,
+        bands,
+        noise(cells),
+        fitting,
+        tuple(unsettled),
+        tuple(unseen),
+        without,
     )
 
 

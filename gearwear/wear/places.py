@@ -84,8 +84,8 @@ class StandingOut:
         Depth of the deepest of those cells, mm.
     pitted : (teeth, 2) bool
         Flanks where more points lie far below than strays can.
-    by_level, whole : (teeth, 2) bool
-        Flanks known to be worn all over by their level; the same or by their side.
+    by_level : (teeth, 2) bool
+        Flanks known to be worn all over by their level.
     beyond : (teeth, 2, rows, columns) float
         Area of what is low past the edge of what was seen on any flank, mm².
     spread, limit : float
@@ -102,7 +102,6 @@ class StandingOut:
     edge_depth: float
     pitted: Bools
     by_level: Bools
-    whole: Bools
     beyond: Floats
     spread: float
     limit: float
@@ -138,6 +137,6 @@ def standing_out(laid: LaidFlat, noise: float, loop: Loop | None, worn: frozense
     around = max(1, round(RIM * gear.transverse_module / grid.size))
     return StandingOut(
         mask=mask, wide=rim(mask, around) & allowed, allowed=allowed, at_ends=at_ends, edges=edges,
-        edge_depth=-float(filled[at_ends].min(initial=0.0)), pitted=np.asarray(pits.any(axis=(2, 3))), by_level=by_level, whole=whole,
+        edge_depth=-float(filled[at_ends].min(initial=0.0)), pitted=np.asarray(pits.any(axis=(2, 3))), by_level=by_level,
         beyond=beyond, spread=spread, limit=limit, around=around,
     )  # fmt: skip

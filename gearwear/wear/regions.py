@@ -242,7 +242,8 @@ def find_wear(
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     on_worn = np.isin(where[:, 1], [side.index for side in worn])
     least = np.where(places.by_level, LEAST_VOLUME_OF_WORN_FLANK, np.where(places.pitted, LEAST_VOLUME_OF_PITS, LEAST_VOLUME))[at]
-    sure = (volumes.certainty > least) | (on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE))
+    whole_side = on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE)
+    sure = (volumes.certainty > least) | whole_side
     stds = np.sqrt(np.diag(covariance))
     beyond_chance = np.where(least == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE) * stds
     counted = np.zeros_like(places.mask)
@@ -255,7 +256,7 @@ def find_wear(
             whole[:, sheets.fillet :] |= places.allowed[one][:, sheets.fillet :]
         region = _Flank.of(laid, volumes, i, standing, whole, where[i]).region(float(stds[i]), noise, loop, errors)
         deep = region.max_depth > BEYOND_CHANCE * region.max_depth_std
-        sure[i] = places.whole[one] or deep or region.volume > beyond_chance[i]
+        sure[i] = places.by_level[one] or whole_side[i] or deep or region.volume > beyond_chance[i]
         if sure[i]:
             regions.append(region)
             counted[one] = whole

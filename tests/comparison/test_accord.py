@@ -17,7 +17,7 @@ from tests.report.fake import changed, real_results
 def left_out(side: Side):
     """The small real result, worn on a left flank, with a side left out as datum."""
     measured = changed(real_results().measured, "placed.registration.datum.worn_side", side)
-    return changed(measured, "placed.registration.doubts", ("another note",))
+    return changed(measured, "placed.registration.unseen", ("another note",))
 
 
 def test_a_side_that_is_worn_may_look_worn():
@@ -78,7 +78,7 @@ def test_the_other_side_is_not_assumed_unworn_where_both_look_worn(side):
 def test_flanks_are_said_to_be_low_where_what_was_found_leaves_them_so(low_um):
     """8 µm against fillets and tips beside all effects, or none once they are taken out."""
     measured = changed(real_results().measured, "placed.registration.datum.low", 0.008)
-    measured = changed(measured, "placed.registration.doubts", ("another note",))
+    measured = changed(measured, "placed.registration.unseen", ("another note",))
     flank = measured.first.points.surface == FLANK
     after = measured.loop.residual_after - np.where(flank, 1e-3 * low_um, 0.0)
     said = in_accord(changed(measured, "loop.residual_after", after), real_results().wear.found).placed.registration.notes

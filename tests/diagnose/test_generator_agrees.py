@@ -33,6 +33,7 @@ PUT_IN = {
     "taper": ({"taper_um": -20.0}, (1.0,)),
     "twist": ({"twist_um": 20.0}, ()),
     "pitch": ({"index_um": tuple((INDEX - INDEX.mean()).tolist())}, (1.0,)),
+    "thickness_variation": ({"thickness_um": tuple((INDEX - INDEX.mean()).tolist())}, (1.0,)),
     "feed_marks": ({"amplitude_um": 4.0, "wavelength_mm": 3.0, "phase_deg": 30.0}, (3.0, 1.0)),
 }
 

@@ -80,6 +80,7 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "taper": ("taper_um",),
     "twist": ("twist_um",),
     "pitch": ("index_um",),
+    "thickness_variation": ("thickness_um",),
     "feed_marks": ("amplitude_um", "wavelength_mm", "phase_deg"),
     # outside the catalogue
     "wave_growing": ("order", "amplitude_um", "phase_deg"),
@@ -129,6 +130,11 @@ def _pitch(e: Effect, o: Outline, f: Feet) -> Floats:
     return np.asarray(1e-3 * index[f.tooth] / o.reference_radius)
 
 
+def _own_thickness(e: Effect, o: Outline, f: Feet) -> Floats:
+    thicker = np.asarray(e.parameters["thickness_um"], dtype=np.float64)
+    return np.asarray(f.side * 0.5e-3 * thicker[f.tooth] / o.reference_radius)
+
+
 def _zeta(o: Outline, f: Feet) -> Floats:
     return f.z / o.face_width - 0.5
 
@@ -159,6 +165,7 @@ def _scratch(e: Effect, o: Outline, f: Feet) -> Floats:
 TURNS: dict[str, Callable[[Effect, Outline, Feet], Floats]] = {
     "tooth_thickness": lambda e, o, f: f.side * 0.5e-3 * e["thickness_um"] / o.reference_radius,
     "pitch": _pitch,
+    "thickness_variation": _own_thickness,
     "helix_slope": _side_cut(lambda e, o, f: f.side * e["slope_um"] * _zeta(o, f)),
     "taper": _side_cut(lambda e, o, f: e["taper_um"] * _zeta(o, f)),
     "helix_crowning": _side_cut(lambda e, o, f: -e["crowning_um"] * (2.0 * _zeta(o, f)) ** 2),

@@ -107,6 +107,7 @@ FLANK = {
     "taper": ({"taper_um": 20.0}, lambda f: 20.0 * f.zeta, 1e-9),
     "twist": ({"twist_um": 20.0}, lambda f: 10.0 * f.u * f.zeta, 1e-9),
     "pitch": ({"index_um": INDEX}, lambda f: f.side * np.array(INDEX)[f.tooth] * COS20, 1e-9),
+    "thickness_variation": ({"thickness_um": INDEX}, lambda f: 0.5 * np.array(INDEX)[f.tooth] * COS20, 1e-9),
     "feed_marks": (
         {"amplitude_um": 4.0, "wavelength_mm": 3.0, "phase_deg": 30.0},
         lambda f: 4.0 * np.cos(2 * math.pi * f.z / 3.0 + math.radians(30.0)),

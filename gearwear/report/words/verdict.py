@@ -12,7 +12,6 @@ from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import (
-    NORMAL_95,
     SPACE,
     as_drawn,
     listed,
@@ -148,9 +147,7 @@ def _limits(results: Results) -> str:
     """Between what the volume lies where more than its standard deviation leaves it open; its own 95 % is in it at either end."""
     limits = results.volume_range
     assert limits is not None
-    value, own = results.wear.volume, NORMAL_95 * results.wear.volume_std
-    low, high = max(min(limits[0], value - own), 0.0), max(limits[1], value + own)
-    return f"{significant(low, 2)} to {significant(high, 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
+    return f"{significant(limits[0], 2)} to {significant(limits[1], 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
 
 
 def _lost(results: Results) -> str:
