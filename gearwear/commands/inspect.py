@@ -183,7 +183,8 @@ def _run(arguments: Namespace) -> None:
             gear = measured.gear
             doubt = wrong_design(gear, seen_radii(measured.placed, gear))
             which = f"the {half} half of a double helical gear" if half is not None else ""
-            notes = [*filter(None, [which, doubt, _unexplained(measured.loop, gear)]), *measured.notes]
+            beside = (_taken_out(measured.loop), _unexplained(measured.loop, gear))
+            notes = [*filter(None, [which, doubt, *beside]), *measured.notes]
             record = inspection_record(
                 design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command, about_teeth
             )
@@ -367,6 +368,18 @@ def _teeth(text: str, count: int) -> list[int] | None:
     if not all(0 <= tooth < count for tooth in teeth):
         raise InputError(f"--topography {text}: teeth from 1 to {count}, such as 1,{count}, or all")
     return teeth
+
+
+def _taken_out(loop: Loop | None) -> str:
+    """What was taken out of the deviations as measurement's, with what it cannot be told from."""
+    from gearwear.design.quantity import listed
+    from gearwear.diagnose.effects.base import MEASURED
+    from gearwear.report.words.effects import effect_words
+    from gearwear.report.words.numbers import or_words
+
+    effects = [effect for effect in (() if loop is None else loop.effects) if effect.kind in MEASURED]
+    said = [effect_words(effect.name, effect.parameters) + or_words(effect.alternatives) for effect in effects]
+    return f"taken out as the scanner's or the mounting's: {listed(said)}; --no-loop leaves it in" if said else ""
 
 
 def _unexplained(loop: Loop | None, gear: Gear) -> str:

@@ -22,6 +22,7 @@ from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
+from gearwear.inspection.settings import DATUM_WORDS
 from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns, trace_columns
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SCHEMA = "gearwear.inspection/1"
+FINE = 1e-3
+"""mm below which U has a decimal more."""
 DPI = 150
 
 
@@ -247,6 +250,7 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     whole = inspection.iso_class
     if whole is not None and settings.required_class is None:
         said.append((f"class of the gear: {whole}", "bold"))
+    said.append((f"pitch and runout are about the axis of the {DATUM_WORDS.get(settings.axis or '', 'teeth')}", "dim"))
     if any(finding.grade.verdict is Verdict.NOT_RESOLVABLE for finding in inspection.findings):
         share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
         said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
@@ -360,7 +364,8 @@ def dimension_lines(inspection: Inspection) -> list[str]:
         if seen.any():
             least, most = float(part.value[seen].min()), float(part.value[seen].max())
             expanded = float(np.median(part.expanded[seen]))
-            said.append(f"{name:<19} {least:.3f} … {most:.3f} mm, U {expanded:.3f}; design {nominal:.3f}")
+            decimals = 3 if expanded >= FINE else 4
+            said.append(f"{name:<19} {least:.3f} … {most:.3f} mm, U {expanded:.{decimals}f}; design {nominal:.3f}")
         else:
             said.append(f"{name:<20}not seen; design {nominal:.3f} mm")
     return said
