@@ -1,4 +1,4 @@
-"""``python -m gearwear.inspect [DESIGN.toml SCAN [SCAN …]]``: a scanned gear by ISO 1328-1, worn or new."""
+"""``gearwear inspect [DESIGN.toml SCAN [SCAN …]]``: a scanned gear by ISO 1328-1, worn or new."""
 
 from __future__ import annotations
 
@@ -253,6 +253,7 @@ def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> N
 def _ranges(arguments: Namespace, gear: Gear) -> Settings:
     """The ranges, sections and circles, each checked against the gear."""
     from gearwear.inspection import Settings
+    from gearwear.inspection.settings import LONGEST
     from gearwear.inspection.stylus import check_ball
 
     low, high = gear.form_roll, gear.tip_roll
@@ -267,8 +268,8 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         return math.sqrt(max(0.25 * diameter**2 - gear.base_radius**2, 0.0))
 
     def positive(name: str, value: float | None) -> float | None:
-        if value is not None and not value > 0.0:
-            raise InputError(f"{name} {value:g}: a length above 0 mm")
+        if value is not None and not 0.0 < value <= LONGEST:
+            raise InputError(f"{name} {value:g}: a length above 0 mm and at most {LONGEST:g} mm would be right")
         return value
 
     def on_face(name: str, between: tuple[float, float] | None) -> tuple[float, float] | None:
@@ -322,6 +323,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
 def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, covariance: Floats | None = None) -> Settings:
     """What the options say, each checked against the gear."""
     from gearwear.inspection import class_k_bands, read_k_bands
+    from gearwear.inspection.prepared import check_settings
 
     start = None
     if arguments.control_diameter is not None:
@@ -341,7 +343,7 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, 
     chosen = _ranges(arguments, gear)
     if start is not None and chosen.control_roll is not None:
         raise InputError("--control-diameter and a profile evaluation range both say where the profile begins: give one of them")
-    return replace(
+    settings = replace(
         chosen,
         edition=edition,
         required_class=arguments.required,
@@ -353,6 +355,8 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, 
         k_bands=bands,
         laboratory=True,
     )
+    check_settings(settings, gear)
+    return settings
 
 
 def _teeth(text: str, count: int) -> list[int] | None:

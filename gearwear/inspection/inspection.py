@@ -184,7 +184,10 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: a double helical gear is inspected one half at a time (`inspection.halves`)"
         )
     given = settings or Settings()
-    given = replace(given, pose_covariance=with_scale(given.pose_covariance, given.scale_std))
+    scale_std = given.scale_std or 0.0
+    given = replace(
+        given, axis=given.axis or "teeth", scale_std=scale_std, pose_covariance=with_scale(given.pose_covariance, scale_std)
+    )
     if given.noise is not None:
         given = replace(given, noise=given.noise / gear.base_helix_cosine)
     notes: list[str] = []
@@ -221,7 +224,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     return Inspection(
         gear=gear, settings=scan.settings, noise=scan.samples.noise, points=len(scan.samples), stray=scan.samples.stray,
         coverage=scan.coverage, profile=profile, helix=helix, pitch=pitch, runout=balls,
-        dimensions=scaled_dimensions(dimensions, given.scale_std), topography=topography(scan.samples, 16, 24),
+        dimensions=scaled_dimensions(dimensions, scale_std), topography=topography(scan.samples, 16, 24),
         laboratory=laboratory, findings=worst_findings(judge, profile, helix, pitch, balls), notes=(*notes, FOOTNOTE),
     )  # fmt: skip
 

@@ -39,6 +39,13 @@ from gearwear.inspection.traces import (
 LEAST_COVERAGE = 0.5
 """A flank with less than this share of its cells seen is "not seen"."""
 
+FINEST_CUTOFF = 1.0 / 500.0
+"""Of the evaluation range: a finer filter needs more time and memory with its square, and no scan has points for it."""
+LONGEST_STATED = 10.0
+"""Involutes that the slope may be stated over."""
+ON_INVOLUTE = 1e-6
+"""mm; rounding of a length of roll that came from a diameter."""
+
 Band = tuple[float, float]
 
 
@@ -129,6 +136,61 @@ class PreparedScan:
         return own_errors[..., None] if shared is None else np.concatenate([shared, own_errors[..., None]], axis=-1)
 
 
+def check_settings(settings: Settings, gear: Gear) -> None:
+    """Refuse what lies off a gear: ranges and bands that hold nothing of it, filters that suit no range on it.
+
+    Parameters
+    ----------
+    settings : Settings
+    gear : Gear
+        The nominal gear, of one helix.
+
+    Raises
+    ------
+    InputError
+        With what the gear has in its place.
+    """
+    form, tip = gear.form_roll, gear.tip_roll
+    involute, face = (min(form, tip), max(form, tip)), (0.0, gear.face_width)
+    first, last = (
+        given if given is not None else own for given, own in ((settings.control_roll, form), (settings.profile_end, tip))
+    )
+    if not profile_place(gear, first) < profile_place(gear, last):
+        raise InputError(
+            f"the profile evaluation from {first:g} to {last:g} mm of roll is empty: from root to tip would be right, which are at {form:.3f} and {tip:.3f} mm"
+        )
+    for name, band, (low, high), of in (
+        ("profile evaluation", (first, last), involute, "of roll: the involute"),
+        ("band of the helix traces", settings.helix_band, involute, "of roll: the involute"),
+        ("helix evaluation", settings.helix_between, face, "of height: the face"),
+        ("band of the profile traces", settings.profile_band, face, "of height: the face"),
+        ("band of the pitch", settings.pitch_band, face, "of height: the face"),
+    ):
+        if band is not None and not (min(band) < high and max(band) > low):
+            raise InputError(f"the {name} from {band[0]:g} to {band[1]:g} mm {of} goes from {low:.3f} to {high:.3f} mm")
+    low, high = involute
+    if settings.pitch_roll is not None and not low - ON_INVOLUTE <= settings.pitch_roll <= high + ON_INVOLUTE:
+        raise InputError(
+            f"the circle of the pitch at {settings.pitch_roll:g} mm of roll: the involute goes from {low:.3f} to {high:.3f} mm"
+        )
+    if settings.slope_length is not None and settings.slope_length > LONGEST_STATED * (high - low):
+        raise InputError(
+            f"slope stated over {settings.slope_length:g} mm: at most {LONGEST_STATED * (high - low):.0f} mm would be right, {LONGEST_STATED:g} involutes"
+        )
+    if settings.sector is not None and settings.sector >= gear.teeth:
+        raise InputError(f"sector of {settings.sector} pitches: 1 to {gear.teeth - 1} would be right for {gear.teeth} teeth")
+    start, end = (
+        None if given is None else profile_place(gear, given) for given in (settings.control_roll, settings.profile_end)
+    )
+    profile = profile_range(gear, settings.edition, start, end)
+    helix = helix_range(gear, settings.helix_between)
+    for name, cutoff, where in (("profile", settings.profile_cutoff, profile), ("helix", settings.helix_cutoff, helix)):
+        if cutoff is not None and not FINEST_CUTOFF * where.length <= cutoff <= where.length:
+            raise InputError(
+                f"cut-off of the {name}'s filter, {cutoff:g} mm: {FINEST_CUTOFF * where.length:.3g} to {where.length:.3g} mm would be right for that range"
+            )
+
+
 def prepare(points: SurfacePoints, gear: Gear, settings: Settings) -> PreparedScan:
     """Choose ranges and bands, and take strays out.
 
@@ -142,8 +204,9 @@ def prepare(points: SurfacePoints, gear: Gear, settings: Settings) -> PreparedSc
     Raises
     ------
     InputError
-        If a band is empty.
+        If a setting suits no gear of these dimensions (`check_settings`).
     """
+    check_settings(settings, gear)
     samples = flank_samples(points, gear)
     profile, helix, notes = _ranges(samples, settings)
     face = (helix.start, helix.end)
@@ -152,11 +215,6 @@ def prepare(points: SurfacePoints, gear: Gear, settings: Settings) -> PreparedSc
         notes.append("A planar section: profile, pitch and dimensions are those at one height, and there is no helix.")
     profile_band, pitch_band = settings.profile_band or face, settings.pitch_band or face
     helix_band = profile_places(gear, settings.helix_band) or (profile.start, profile.end)
-    for name, (low, high) in (("profile", profile_band), ("helix", helix_band), ("pitch", pitch_band)):
-        if not low < high:
-            raise InputError(
-                f"the band of the {name} traces, {low:g} to {high:g} mm, is empty: the first value must be the smaller"
-            )
     area = ((profile.start, profile.end), (helix.start, helix.end))
     coverage = flank_coverage(samples, area)
     seen = samples.on_flanks(coverage >= LEAST_COVERAGE)

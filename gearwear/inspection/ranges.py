@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearwear.design.gear import Gear
+from gearwear.errors import InputError
 from gearwear.inspection.tolerances import Edition
 
 LEAST_CUTOFF = 0.25
@@ -39,7 +40,7 @@ class Range:
 
     def __post_init__(self) -> None:
         if not self.end > self.start:
-            raise ValueError(f"the evaluation range from {self.start:g} to {self.end:g} mm is empty")
+            raise InputError(f"the evaluation range from {self.start:g} to {self.end:g} mm is empty: a higher end would be right")
 
     @property
     def stated(self) -> float:

@@ -296,7 +296,7 @@ def test_1995_takes_its_own_range(noisy, pinion):
         (Settings(required_class=14), "class 14 does not exist"),
         (Settings(span_teeth=6), "span over 6 teeth"),
         (Settings(pin_diameter=1.0), "pin of 1"),
-        (Settings(profile_band=(9.0, 4.0)), "band of the profile traces, 9 to 4 mm"),
+        (Settings(profile_band=(19.0, 24.0)), "band of the profile traces from 19 to 24 mm of height: the face goes from"),
     ],
 )
 def test_refuses_settings_that_cannot_be_met(noisy, pinion, settings, words):

@@ -37,7 +37,12 @@ def test_options_become_settings_in_roll_and_z(pinion):
         (("--profile-z-mm", "15.1"), "--profile-z-mm 15.1: the face goes from 0 to 15 mm"),
         (("--helix-z-mm", "-1,12"), "joined with = where it begins with a minus sign"),
         (("--profile-half-width-mm", "1"), "needs the place of the section"),
-        (("--slope-length-mm", "-1"), "a length above 0 mm"),
+        (("--slope-length-mm", "-1"), "--slope-length-mm -1: a length above 0 mm"),
+        (("--slope-length-mm", "inf"), "--slope-length-mm inf: a length above 0 mm and at most 100000 mm would be right"),
+        (("--profile-cutoff-mm", "inf"), "--profile-cutoff-mm inf: a length above 0 mm and at most"),
+        (("--profile-cutoff-mm", "1e-9"), "cut-off of the profile's filter, 1e-09 mm: 0.0442 to 22.1 mm would be right"),
+        (("--helix-cutoff-mm", "100"), "cut-off of the helix's filter, 100 mm: 0.027 to 13.5 mm would be right"),
+        (("--span-teeth", "0"), "span_teeth = 0: a whole number from 1 up"),
         (("--control-diameter", "74", "--profile-roll-mm", "5,20"), "give one of them"),
     ],
 )
