@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearwear.comparison.bore import datum_axis, flanks_about_bore
+from gearwear.comparison.bore import filled_in
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
+from gearwear.design.spec import shown
 from gearwear.errors import InputError, NotThisGear
 from gearwear.inspection.halves import Half, inspect_half
 from gearwear.inspection.inspection import Inspection
@@ -141,23 +142,24 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
     ----------
     measured : MeasuredGear
     settings : Settings or None
-        Class, bands, gauges; None: the defaults, with the scan's own noise and what is not graded, about the axis that the design's ``[datum]`` states.
-
+        Class, bands, gauges, axis. What they leave out comes from the measured gear: noise, pose and scale are as unsure as the scan and the
+        design say, and the axis is that of the design's ``[datum]``. None: the defaults, and what is not graded (`laboratory`).
     half : {"lower", "upper"} or None
         Of a double helical gear, whose halves are inspected one by one; the lower one begins at z = 0. None: the lower.
 
     Returns
     -------
     Inspection
+
+    Raises
+    ------
+    InputError
+        If a setting cannot be met, the datum was not seen, or the gear has no halves.
     """
-    flanks, covariance, axis = measured.flanks, measured.placed.registration.covariance, "teeth"
-    if settings is None and measured.design.datum.axis != "teeth":
-        axis = measured.design.datum.axis
-        flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
+    if half is not None and half not in tuple(Half):
+        raise InputError(f"half = {shown(half)}: lower or upper would be right, of a double helical gear")
     which = Half(half or Half.LOWER) if half is not None or measured.gear.spec.gap > 0.0 else None
-    chosen = settings or Settings(
-        noise=measured.noise, pose_covariance=covariance, scale_std=measured.design.scale_std, laboratory=True, axis=axis
-    )
+    flanks, chosen = filled_in(measured, settings or Settings(laboratory=True))
     return inspect_half(flanks, measured.gear, which, chosen)
 
 

@@ -20,6 +20,7 @@ from scipy.spatial.transform import Rotation
 
 import gearwear as gw
 from gearwear.design.card import Card, few, measured
+from gearwear.inspection.settings import Settings
 from tests.synthetic import Effect, Patch, Recipe, make_scan
 
 if TYPE_CHECKING:
@@ -120,6 +121,37 @@ class TestStages:
         assert whole.inspection is not None
         np.testing.assert_array_equal(gw.inspect(stepwise).coverage, whole.inspection.coverage)
         assert [effect.name for effect in stepwise.loop.effects] == ["coating"]
+
+    def test_settings_leave_to_the_measured_gear_what_they_do_not_say(self):
+        """U of the pitch knows scale, pose and datum, whatever else is chosen: the same as without settings."""
+        design = scanned()[0]
+        datum = replace(design.datum, axis="ends", temperature=23.0, temperature_std=5.0)
+        gear = replace(results().measured, design=replace(design, datum=datum))
+        plain, chosen = gw.inspect(gear), gw.inspect(gear, Settings(required_class=9))
+        assert (plain.settings.axis, chosen.settings.axis, chosen.settings.required_class) == ("ends", "ends", 9)
+        assert chosen.settings.scale_std == gear.design.scale_std > 0.0
+        for name in ("single", "index", "cumulative"):
+            one, other = getattr(plain.pitch, name), getattr(chosen.pitch, name)
+            np.testing.assert_array_equal(one.value, other.value)
+            np.testing.assert_array_equal(one.expanded, other.expanded)
+        np.testing.assert_array_equal(plain.profile.slope.expanded, chosen.profile.slope.expanded)
+
+    def test_settings_that_are_stated_are_kept(self):
+        design = scanned()[0]
+        gear = replace(results().measured, design=replace(design, datum=replace(design.datum, axis="ends")))
+        about_teeth = gw.inspect(gear, Settings(axis="teeth", noise=0.05, scale_std=0.0, pose_covariance=np.zeros((6, 6))))
+        assert about_teeth.settings.axis == "teeth"
+        assert about_teeth.settings.noise == 0.05  # of a spur gear along the normal as across it
+        assert about_teeth.pitch.index.shared is not None and not about_teeth.pitch.index.shared.any()
+        np.testing.assert_array_equal(about_teeth.pitch.index.value, gw.inspect(results().measured).pitch.index.value)
+        with pytest.raises(gw.InputError, match="an axis from the bore needs bore_diameter"):
+            gw.inspect(gear, Settings(axis="bore"))
+
+    def test_a_half_that_is_none_is_refused(self):
+        with pytest.raises(gw.InputError, match="half = 'foo': lower or upper would be right"):
+            gw.inspect(results().measured, half="foo")
+        with pytest.raises(gw.InputError, match="has one helix and no halves"):
+            gw.inspect(results().measured, half="upper")
 
     def test_an_array_is_as_good_as_a_file(self):
         design, file = scanned()

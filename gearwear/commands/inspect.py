@@ -20,7 +20,6 @@ from gearwear.commands.inputs import (
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
-    from gearwear.arrays import Floats
     from gearwear.design.gear import Gear
     from gearwear.design.pair import Design
     from gearwear.diagnose.found import Loop
@@ -155,6 +154,7 @@ def _run(arguments: Namespace) -> None:
         edition = _edition(arguments)
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
+        from gearwear.comparison.bore import filled_in
         from gearwear.comparison.closing import measure
         from gearwear.inspection.halves import half_gear, inspect_half
         from gearwear.placing.refusal import seen_radii
@@ -166,16 +166,12 @@ def _run(arguments: Namespace) -> None:
         tell("inspection")
         half = _half(arguments, measured.gear)
         nominal = measured.gear if half is None else half_gear(measured.gear, half)
-        settings = _settings(arguments, nominal, edition, measured.noise, measured.placed.registration.covariance)
-        settings = replace(settings, scale_std=measured.design.scale_std)
-        flanks, about_teeth = measured.flanks, None
-        axis = arguments.axis or design.datum.axis
-        if axis != "teeth":
-            from gearwear.comparison.bore import datum_axis, flanks_about_bore
-
-            about_teeth = inspect_half(flanks, measured.gear, half, replace(settings, laboratory=False))
-            flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
-            settings = replace(settings, axis=axis, pose_covariance=covariance)
+        asked = _settings(arguments, nominal, edition)
+        flanks, settings = filled_in(measured, asked)
+        about_teeth = None
+        if settings.axis != "teeth":
+            on_teeth, beside = filled_in(measured, replace(asked, axis="teeth", laboratory=False))
+            about_teeth = inspect_half(on_teeth, measured.gear, half, beside)
         inspection = inspect_half(flanks, measured.gear, half, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
@@ -243,7 +239,7 @@ def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> N
     for gear in gears:
         try:
             half = _half(arguments, gear)
-            _settings(arguments, gear if half is None else half_gear(gear, half), edition, 0.0)
+            _settings(arguments, gear if half is None else half_gear(gear, half), edition)
         except InputError as error:
             wrong.append(error)
     if len(wrong) == len(gears):
@@ -320,7 +316,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
     )
 
 
-def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, covariance: Floats | None = None) -> Settings:
+def _settings(arguments: Namespace, gear: Gear, edition: Edition) -> Settings:
     """What the options say, each checked against the gear."""
     from gearwear.inspection import class_k_bands, read_k_bands
     from gearwear.inspection.prepared import check_settings
@@ -347,13 +343,12 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, 
         chosen,
         edition=edition,
         required_class=arguments.required,
-        noise=noise,
-        pose_covariance=covariance,
         control_roll=chosen.control_roll if start is None else start,
         span_teeth=arguments.span_teeth,
         pin_diameter=arguments.pin_diameter,
         k_bands=bands,
         laboratory=True,
+        axis=arguments.axis,
     )
     check_settings(settings, gear)
     return settings

@@ -13,6 +13,7 @@ from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, OTHER, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.errors import InputError
+from gearwear.inspection.settings import Settings
 from gearwear.placing.pose import motion_columns
 from gearwear.robust import median_scale
 
@@ -212,6 +213,34 @@ def flanks_about_bore(measured: MeasuredGear, axis: BoreAxis) -> tuple[SurfacePo
     covariance[freedoms, :] = 0.0
     covariance[:, freedoms] = 0.0
     return about, covariance + axis.covariance
+
+
+def filled_in(measured: MeasuredGear, settings: Settings) -> tuple[SurfacePoints, Settings]:
+    """The flanks about the axis that pitch and runout are asked about, and the settings with what they leave out.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+    settings : Settings
+        Where `axis` is None, it is that of the design's ``[datum]``; `noise` that of the scan, `pose_covariance` that of the registration and
+        the datum, `scale_std` that of the design.
+
+    Raises
+    ------
+    InputError
+        If the design does not have the datum, or the scan shows too little of it.
+    """
+    axis = settings.axis or measured.design.datum.axis
+    flanks, covariance = measured.flanks, measured.placed.registration.covariance
+    if axis != "teeth":
+        flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
+    return flanks, replace(
+        settings,
+        axis=axis,
+        noise=measured.noise if settings.noise is None else settings.noise,
+        pose_covariance=covariance if settings.pose_covariance is None else settings.pose_covariance,
+        scale_std=measured.design.scale_std if settings.scale_std is None else settings.scale_std,
+    )
 
 
 def _straightened(measured: MeasuredGear, points: SurfacePoints) -> SurfacePoints:

@@ -10,7 +10,7 @@ from gearwear.inspection.tolerances import Edition
 
 
 def settings(gear, *words):
-    return _settings(parser().parse_args(list(words)), gear, Edition.ISO_2013, 0.01)
+    return _settings(parser().parse_args(list(words)), gear, Edition.ISO_2013)
 
 
 def test_options_become_settings_in_roll_and_z(pinion):
