@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gearwear.arrays import Floats
 from gearwear.comparison.bore import filled_in
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
@@ -98,7 +99,7 @@ def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "ar
     Raises
     ------
     InputError
-        If these are no points.
+        If these are no points, or the normals are not one for each.
 
     Examples
     --------
@@ -107,17 +108,31 @@ def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "ar
     >>> as_scan(np.column_stack([np.cos(angle), np.sin(angle)]), name="a circle").kind
     'section'
     """
-    given = np.asarray(points, dtype=np.float64)
+    given = _real(points, "points")
     if given.ndim != 2 or given.shape[1] not in (2, 3):
         raise InputError(f"points of shape {given.shape}: (n, 3), or (n, 2) for a planar section, would be right")
+    outward = None if normals is None else _real(normals, "normals")
+    if outward is not None and outward.shape != (len(given), 3):
+        raise InputError(f"normals of shape {outward.shape}: ({len(given)}, 3), one for each point, would be right")
     if given.shape[1] == 2:
         given = np.column_stack([given, np.zeros(len(given))])
-    cleaned, kind = clean(Contents(given, None if normals is None else np.asarray(normals, dtype=np.float64)))
+    cleaned, kind = clean(Contents(given, outward))
     view = np.zeros(len(cleaned.points), np.int8)
     return Scan(
         points=np.ascontiguousarray(cleaned.points), normals=cleaned.normals, triangles=None, kind=cast(ScanKind, kind),
         files=(name,), rejected=cleaned.rejected, view=view,
     )  # fmt: skip
+
+
+def _real(values: ArrayLike, name: str) -> Floats:
+    """Numbers as an array; what numpy would cast silently, words and complex numbers, are none."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "fiuO":
+            return np.asarray(array, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: rows of different lengths, or no numbers; an array of real numbers would be right") from None
+    raise InputError(f"{name} of type {array.dtype}: an array of real numbers would be right")
 
 
 def find_wear(measured: MeasuredGear) -> Wear:

@@ -165,6 +165,25 @@ class TestStages:
             with pytest.raises(gw.InputError):
                 gw.as_scan(wrong)
 
+    @pytest.mark.parametrize(
+        ("points", "normals", "words"),
+        [
+            (np.ones((100, 3)), np.ones((50, 3)), r"normals of shape \(50, 3\): \(100, 3\), one for each point, would be right"),
+            (np.ones((100, 3)), np.ones((100, 2)), r"normals of shape \(100, 2\): \(100, 3\)"),
+            (np.ones((100, 2)), np.ones((100, 2)), r"normals of shape \(100, 2\): \(100, 3\)"),
+            (np.ones((3, 3)), np.ones(9), r"normals of shape \(9,\): \(3, 3\)"),
+            (np.ones((100, 3)), "up", r"normals of type <U2: an array of real numbers would be right"),
+            ("scan.ply", None, r"points of type <U8: an array of real numbers would be right"),
+            (np.full((4, 3), "1.5"), None, r"points of type <U3"),
+            ([[1.0, 2.0, 3.0], [1.0, 2.0]], None, r"points: rows of different lengths"),
+            (np.ones((100, 3), dtype=complex), None, r"points of type complex128"),
+            (np.full((4, 3), None), np.array([["x"] * 3] * 4, dtype=object), r"normals: rows of different lengths, or no numbers"),
+        ],
+    )
+    def test_what_is_no_array_of_points_is_refused(self, points, normals, words):
+        with pytest.raises(gw.InputError, match=words):
+            gw.as_scan(points, normals)
+
     def test_a_design_from_the_scan_gives_the_same_gear(self):
         design, found = scanned()[0], proposed()
         assert found.ranked[0].gear.base_radius == design.gears["pinion"].base_radius
