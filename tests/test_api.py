@@ -177,7 +177,11 @@ class TestStages:
             (np.full((4, 3), "1.5"), None, r"points of type <U3"),
             ([[1.0, 2.0, 3.0], [1.0, 2.0]], None, r"points: rows of different lengths"),
             (np.ones((100, 3), dtype=complex), None, r"points of type complex128"),
-            (np.full((4, 3), None), np.array([["x"] * 3] * 4, dtype=object), r"normals: rows of different lengths, or no numbers"),
+            (
+                np.full((4, 3), None),
+                np.array([["x"] * 3] * 4, dtype=object),
+                r"normals: rows of different lengths, or no numbers",
+            ),
         ],
     )
     def test_what_is_no_array_of_points_is_refused(self, points, normals, words):
@@ -203,6 +207,11 @@ class TestStages:
             gw.propose_design([gw.as_scan(points[::2], name="first view"), gw.as_scan(moved, name="moved view")])
         with pytest.raises(gw.InputError, match="no scan is given"):
             gw.propose_design([])
+
+    @pytest.mark.parametrize("known", [{"module": 0.0}, {"module": float("nan")}, {"pressure_angle": 0.0}, {"face_width": 0.0}])
+    def test_what_is_known_must_be_possible(self, known):
+        with pytest.raises(gw.InputError, match="would be right"):
+            gw.propose_design(scanned_scan()[1], **known)
 
     def test_paths_may_be_strings(self, tmp_path):
         with pytest.raises(gw.InputError, match=r"nowhere.toml: no such file"):

@@ -1,4 +1,4 @@
-"""``python -m gearwear.commands.design``, as ``gearwear design``: a design file from a few dimensions, or from the scan itself."""
+"""``gearwear design [SCAN]``: a design file from a few dimensions, or from the scan itself."""
 
 from __future__ import annotations
 
@@ -85,6 +85,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> None:
+    from gearwear.identify.proposal import check_known
+
+    check_known(arguments.module, _angle(arguments))
     text, headline = _from_scan(arguments) if arguments.scan is not None else _from_numbers(arguments)
     if arguments.out is None:
         sys.stdout.write(text)
@@ -237,7 +240,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     """TOML and one line on it, from a scan."""
     dimensions = ("tip_diameter", "root_diameter", "span", "over_pins", "tolerance")
     for name in dimensions:
-        if getattr(arguments, name):
+        if getattr(arguments, name) not in (None, []):  # 0 was given too
             raise InputError(
                 f"--{name.replace('_', '-')} beside a scan: the scan is measured itself; one of the two would be right"
             )

@@ -14,7 +14,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.standards import FRACTION, MM_PER_INCH, diametral_pitch
 from gearwear.design.surface import END_LOW, FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints, locate
 from gearwear.errors import InputError
-from gearwear.identify.proposal import SPUR, Gauge, Helix, Measured, Proposal, propose, spec_of
+from gearwear.identify.proposal import SPUR, Gauge, Helix, Measured, Proposal, check_known, propose, spec_of
 from gearwear.identify.survey import PROFILE_SLOPE, Survey, survey
 from gearwear.placing.registration import Registration, register
 from gearwear.robust import median_scale, scale_about
@@ -157,13 +157,17 @@ def find_candidates(
     Raises
     ------
     InputError
-        If no gear is seen, or a double helical ring, the tooth count is another one, or no gear that can be cut has its dimensions.
+        If what is known is impossible, no gear is seen, or a double helical ring, the tooth count is another one, or no gear that can be cut
+        has its dimensions.
 
     Notes
     -----
     Proposals are ranked by their cost plus 2 n ln (scatter / least scatter) with n = 12: what tool and scanner do is common to all flanks,
     so many points are no many observations.
     """
+    check_known(module, pressure_angle)
+    if face_width is not None and not 0.0 < face_width < math.inf:
+        raise InputError(f"face width {face_width:g} mm: above 0 would be right")
     seen = survey(points, normals, planar)
     if seen.internal and len(seen.halves) > 1:
         raise InputError(f"the scan looks like {seen.what}; double helical rings are out of scope")

@@ -49,6 +49,8 @@ DRAWN_ANGLES = (1.0, 0.5, 0.01)
 """Degrees, of which a drawn helix angle is a multiple where a scan leaves room for it."""
 MODULE_RANGE = (1e-3, 1e3)
 """mm; what a design may have."""
+ANGLE_RANGE = (5.0, 45.0)
+"""Degrees; what a design may have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,6 +211,16 @@ class Proposal:
         return ", ".join(parts)
 
 
+def check_known(module: float | None, pressure_angle: float | None) -> None:
+    """Refuse a module (mm) or a pressure angle (rad), stated as known, that no gear has."""
+    for name, value, (low, high), unit in (
+        ("module", module, MODULE_RANGE, " mm"),
+        ("pressure angle", None if pressure_angle is None else math.degrees(pressure_angle), ANGLE_RANGE, "°"),
+    ):
+        if value is not None and not low <= value <= high:  # refuses NaN too
+            raise InputError(f"{name} {value:g}{unit}: from {low:g} to {high:g}{unit} would be right")
+
+
 def propose(
     teeth: int,
     gauges: Sequence[Gauge],
@@ -249,7 +261,7 @@ def propose(
     Raises
     ------
     InputError
-        If no gear has these dimensions, or nothing tells the size.
+        If no gear has these dimensions, module or pressure angle, or nothing tells the size.
 
     Examples
     --------
@@ -261,6 +273,7 @@ def propose(
     """
     if not FEWEST_TEETH <= teeth <= MOST_TEETH:
         raise InputError(f"teeth = {shown(teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_TEETH}")
+    check_known(module, pressure_angle)
     for gauge in gauges:
         _check(gauge, teeth)
     sized = [g for g in gauges if g.kind != "thickness"]

@@ -12,6 +12,7 @@ from gearwear.design import Gear, GearSpec, parse_design
 from gearwear.design.files.writing import design_text
 from gearwear.design.standards import DIAMETRAL_PITCHES, FIRST_SERIES, SECOND_SERIES, modules_near
 from gearwear.errors import InputError
+from gearwear.identify.candidates import find_candidates
 from gearwear.identify.proposal import Gauge, Helix, Measured, propose, spec_of
 from gearwear.inspection.dimensions import over_pins, span
 
@@ -237,6 +238,23 @@ def test_what_makes_no_sense_is_refused_or_costs_dearly(teeth, gauges, what):
             propose(teeth, gauges)
     else:
         assert best(teeth, *gauges).cost > 30.0
+
+
+@pytest.mark.parametrize(
+    ("known", "what"),
+    [
+        ({"module": 0.0}, "module 0 mm: from 0.001 to 1000 mm would be right"),
+        ({"module": math.nan}, "module nan mm"),
+        ({"module": 2e3}, "module 2000 mm"),
+        ({"pressure_angle": 20.0}, "pressure angle 1145.92°: from 5 to 45° would be right"),
+        ({"pressure_angle": math.nan}, "pressure angle nan°"),
+    ],
+)
+def test_a_module_or_an_angle_that_no_gear_has_is_refused(known, what):
+    with pytest.raises(InputError, match=what):
+        propose(12, [gauge("tip_diameter", 88.9)], **known)
+    with pytest.raises(InputError, match=what):
+        find_candidates(np.zeros((3, 3)), **known)  # before the scan is looked at
 
 
 def test_the_design_that_is_written_is_the_one_that_is_read():
