@@ -44,9 +44,9 @@ class LoadSpec:
             how_many = "both given" if self.torque is not None else "both missing"
             raise InputError(f"[load] torque_Nm and load_per_width_N_mm are {how_many}: one of them is needed")
         if self.torque is not None:
-            _within("torque_Nm", 1e-3 * self.torque, 0.0, 1e9)
+            _above("torque_Nm", 1e-3 * self.torque, 1e9)
         if self.load_per_width is not None:
-            _within("load_per_width_N_mm", self.load_per_width, 0.0, 1e5)
+            _above("load_per_width_N_mm", self.load_per_width, 1e5)
         if self.speed_rpm is not None:
             _within("speed_rpm", self.speed_rpm, 0.0, 1e6)
         _within("elastic_modulus_MPa", self.elastic_modulus, 10.0, 1e7)
@@ -59,6 +59,12 @@ class LoadSpec:
             return self.torque / pinion_base_radius
         assert self.load_per_width is not None
         return self.load_per_width * width
+
+
+def _above(label: str, value: float, high: float) -> None:
+    """Refuse what is no load: without one nothing is elastic, and every share of it is 0 / 0."""
+    if not 0.0 < value <= high:  # refuses NaN too
+        raise InputError(f"[load] {label} = {value:g}: must be above 0 and at most {high:g}")
 
 
 def _within(label: str, value: float, low: float, high: float) -> None:

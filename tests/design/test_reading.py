@@ -150,7 +150,12 @@ def test_wrong_pair_values_are_named(pair, message):
         ({"gear": GEAR, "load": {"torque_Nm": 1}}, r"\[load\] needs both \[pinion\] and \[gear\]; only \[gear\] is there"),
         ({"gear": GEAR, "pinion": GEAR, "load": {}}, r"\[load\] torque_Nm and load_per_width_N_mm are both missing: one of them"),
         ({"gear": GEAR, "pinion": GEAR, "load": {"torque": 1}}, r"\[load\] torque is unknown \(torque_Nm\?\)"),
-        ({"gear": GEAR, "pinion": GEAR, "load": {"torque_Nm": -1}}, r"\[load\] torque_Nm = -1: must lie from 0"),
+        ({"gear": GEAR, "pinion": GEAR, "load": {"torque_Nm": -1}}, r"\[load\] torque_Nm = -1: must be above 0"),
+        ({"gear": GEAR, "pinion": GEAR, "load": {"torque_Nm": 0}}, r"\[load\] torque_Nm = 0: must be above 0 and at most 1e\+09"),
+        (
+            {"gear": GEAR, "pinion": GEAR, "load": {"load_per_width_N_mm": 0}},
+            r"\[load\] load_per_width_N_mm = 0: must be above 0 and at most 100000",
+        ),
         (
             {"gear": GEAR, "pinion": GEAR, "load": {"torque_Nm": 1, "poisson": 0.5}},
             r"\[load\] poisson = 0.5: must lie from 0 to 0.49",
