@@ -35,6 +35,14 @@ _MILD_WEAR_DEPTH = 0.010
 """mm; depth above which contact leaves the line of action of the unworn flanks, on which K is reckoned."""
 
 
+def check_confidence(confidence: float) -> None:
+    """Refuse a confidence that no interval has: at 1 it has no end, and below 0 its limits change places."""
+    if not (
+        confidence > 0.0 and 0.5 + 0.5 * confidence < 1.0
+    ):  # as it is used: so near to 1 that it rounds to it; refuses NaN too
+        raise InputError(f"confidence {confidence:g}: above 0 and below 1 would be right, such as 0.95")
+
+
 @dataclass(frozen=True, slots=True)
 class SingleContact:
     """``depth = A |K| + B`` on the stretch where one pair carries alone, mm, with standard deviations; nan where too few points lie there.
@@ -131,7 +139,14 @@ class WearFit(Card):
         return law_terms(self.gear, self.mate, self.centre_distance, roll, self.sharing)
 
     def reach(self, confidence: float = 0.95) -> Floats:
-        """(3,) standard deviations from the value to the limits of a two-sided interval, by Student's t."""
+        """(3,) standard deviations from the value to the limits of a two-sided interval, by Student's t.
+
+        Raises
+        ------
+        InputError
+            If the confidence is none (`check_confidence`).
+        """
+        check_confidence(confidence)
         from scipy.special import stdtrit  # scipy.stats takes a quarter of a second to import
 
         normal = NormalDist().inv_cdf(0.5 + 0.5 * confidence)

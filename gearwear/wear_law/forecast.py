@@ -20,7 +20,7 @@ from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact
 from gearwear.threads import on_one_thread
 from gearwear.wear_law.archard import specific_sliding
-from gearwear.wear_law.fit import WearFit, alike_fits
+from gearwear.wear_law.fit import WearFit, alike_fits, check_confidence
 
 Quantity = Literal["depth", "thickness", "backlash"]
 """Greatest depth on the path of contact (mm, normal), loss of tooth thickness (mm, arc), growth of the normal backlash (mm)."""
@@ -134,7 +134,7 @@ def forecast_wear(
     radius : float or None
         Where the loss of thickness is asked, mm; None: the reference circle.
     confidence : float
-        Of the band.
+        Of the band, above 0 and below 1.
 
     Returns
     -------
@@ -143,7 +143,7 @@ def forecast_wear(
     Raises
     ------
     InputError
-        If there is no fit, the cycles are not positive or lie before now, or the radius lies off the path of contact.
+        If there is no fit, the confidence is none, the cycles are not positive or lie before now, or the radius lies off the path of contact.
 
     Notes
     -----
@@ -162,6 +162,7 @@ def forecast_wear(
     carry, and where sliding wear is steep there it gives less: 2 % less at 3 µm of greatest depth, 15 % at 75 µm. Measured flanks carry
     on their highest places, and their backlash grows by less still.
     """
+    check_confidence(confidence)
     fits = _alike(fits)
     asked = np.atleast_1d(np.asarray(cycles, dtype=np.float64))
     ahead = asked / _positive(cycles_run) - 1.0
@@ -214,7 +215,7 @@ def cycles_left(
     Raises
     ------
     InputError
-        If there is no fit, or the limit or the cycles run are not positive.
+        If there is no fit, the limit or the cycles run are not positive, or the confidence is none.
 
     Examples
     --------
@@ -229,6 +230,7 @@ def cycles_left(
     >>> [round(n / 1e6, 2) for n in (left.low, left.value, left.high)]
     [2.95, 3.0, 3.03]
     """
+    check_confidence(confidence)
     if not 0.0 < limit < math.inf:
         raise InputError(f"limit {limit:g} mm: must be above 0")
     if quantity not in get_args(Quantity):

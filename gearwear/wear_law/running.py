@@ -22,7 +22,7 @@ from gearwear.loaded.tooth_compliance import tooth_compliance
 from gearwear.loaded.wearing import WearMember, run_wear, run_wear_ensemble
 from gearwear.meshing.slices import common_width
 from gearwear.threads import on_one_thread
-from gearwear.wear_law.fit import WearFit
+from gearwear.wear_law.fit import WearFit, check_confidence
 from gearwear.wear_law.forecast import Band, FlankState, Quantity, WearForecast, measured_by
 
 MATE_RATES = (0.0, 0.5, 1.5)
@@ -195,7 +195,7 @@ def forecast_by_running(
     Raises
     ------
     InputError
-        If cycles or force are not positive, cycles lie before now, or no wear is seen.
+        If cycles or force are not positive, cycles lie before now, the confidence is none, or no wear is seen.
 
     Notes
     -----
@@ -205,6 +205,7 @@ def forecast_by_running(
     come, are drawn with them. A distance Δ beyond the points measured a depth errs by ``MODEL_SHARE √(1 − exp(−2 Δ / MODEL_LENGTH))`` of it as well: what is
     left of an error with covariance ``exp(−Δ / MODEL_LENGTH)`` where it is known at the last point.
     """
+    check_confidence(confidence)
     asked = np.atleast_1d(np.asarray(cycles, dtype=np.float64))
     if not (
         cycles_run > 0.0 and load_per_width > 0.0 and (asked >= cycles_run * (1.0 - 1e-12)).all() and np.isfinite(asked).all()

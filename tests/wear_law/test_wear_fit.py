@@ -15,6 +15,7 @@ from gearwear.wear_law.archard import LoadSharing, wear_per_cycle
 from gearwear.wear_law.fit import _covariances, alike_fits, fit_wear_law
 from gearwear.wear_law.forecast import cycles_left, forecast_wear
 from gearwear.wear_law.non_negative import _greater
+from gearwear.wear_law.running import forecast_by_running
 from tests.meshing.worn import design, roll_of, wear
 
 C = 114.3
@@ -309,6 +310,19 @@ def test_what_does_not_match_is_named(pinion, wheel):
         forecast_wear(fit, 1e6, np.array([math.nan]))
     with pytest.raises(InputError, match="load per face width 0"):
         fit.wear_coefficient(1e6, 0.0)
+
+
+@pytest.mark.parametrize("confidence", [1.0, 1.0 - 1e-16, 0.0, -0.5, 2.0, math.nan])
+def test_a_confidence_that_no_interval_has_is_refused(pinion, wheel, confidence):
+    fits = fit_wear_law(pinion, wheel, C, ROLL, law(ROLL), np.full(90, 1e-4))
+    for ask in (
+        lambda: forecast_wear(fits, 1e6, np.array([2e6]), confidence=confidence),
+        lambda: forecast_by_running(fits[0], 1e6, np.array([2e6]), 100.0, confidence=confidence),
+        lambda: cycles_left(fits, 1e6, 0.1, "depth", confidence=confidence),
+        lambda: fits[0].interval(confidence),
+    ):
+        with pytest.raises(InputError, match="above 0 and below 1 would be right"):
+            ask()
 
 
 def test_results_show_themselves_in_few_lines(pinion, wheel):
