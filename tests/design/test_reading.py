@@ -151,6 +151,8 @@ def test_wrong_pair_values_are_named(pair, message):
         ({"gear": GEAR, "pinion": GEAR, "load": {}}, r"\[load\] torque_Nm and load_per_width_N_mm are both missing: one of them"),
         ({"gear": GEAR, "pinion": GEAR, "load": {"torque": 1}}, r"\[load\] torque is unknown \(torque_Nm\?\)"),
         ({"gear": GEAR, "pinion": GEAR, "load": {"torque_Nm": -1}}, r"\[load\] torque_Nm = -1: must be above 0"),
+        ({"gear": GEAR | {"helix_angle": "15"}, "pinion": GEAR}, r"^\[gear\] helix_angle = '15': "),
+        ({"gear": GEAR, "pinion": GEAR | {"helix_angle": "15"}}, r"^\[pinion\] helix_angle = '15': "),
         ({"gear": GEAR, "pinion": GEAR, "load": {"torque_Nm": 0}}, r"\[load\] torque_Nm = 0: must be above 0 and at most 1e\+09"),
         (
             {"gear": GEAR, "pinion": GEAR, "load": {"load_per_width_N_mm": 0}},

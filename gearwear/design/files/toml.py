@@ -213,7 +213,8 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
-    tables = {part: _with_shared(data[part], data[parts[1 - i]] if len(parts) == 2 else {}) for i, part in enumerate(parts)}
+    # A gear alone shares with itself: nothing.
+    tables = {part: _with_shared(data[part], other, data[other]) for part, other in zip(parts, parts[::-1], strict=True)}
     gears = {part: Gear.from_spec(_gear_spec(part, tables[part])) for part in parts}
     notes = tuple(note for gear in gears.values() for note in gear.notes)
     if len(parts) == 1:
@@ -231,14 +232,15 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     )  # fmt: skip
 
 
-def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
-    """`table` with what a pair must share taken from the mate where it is left out; the helix angle with the other hand, inside a ring the same."""
+def _with_shared(table: dict[str, Any], other: str, mate: dict[str, Any]) -> dict[str, Any]:
+    """`table` with what a pair must share taken from its mate, of the section `other`, where it is left out; the helix angle with the other hand,
+    inside a ring the same."""
     shared = {key: mate[key] for key in SHARED if key in mate and key not in table}
     if any(key in table for key in MODULES):
         shared = {key: value for key, value in shared.items() if key not in MODULES}
     if "helix_angle" in mate and "helix_angle" not in table:
         same = bool(table.get("internal")) != bool(mate.get("internal"))
-        shared["helix_angle"] = finite_number("mate", mate, "helix_angle") * (1.0 if same else -1.0)
+        shared["helix_angle"] = finite_number(other, mate, "helix_angle") * (1.0 if same else -1.0)
     return {**table, **shared}
 
 
