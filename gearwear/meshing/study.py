@@ -25,7 +25,7 @@ from gearwear.meshing.passes import Cycle
 from gearwear.meshing.path import PathLimit, Sliding, radius_at_roll, sliding
 from gearwear.meshing.recommended import RecommendedBacklash, recommended_backlash
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
-from gearwear.meshing.worn_gear import Measured, WornGear, as_measured, each_measured, in_same_slices, uniform_loss
+from gearwear.meshing.worn_gear import Measured, WornGear, as_measured, each_measured, in_same_slices, is_tooth, uniform_loss
 from gearwear.threads import on_one_thread
 
 POSITIONS, PLACES = 34, 400
@@ -325,8 +325,8 @@ def study_meshing(
         raise InputError(f"{'part' if teeth is None else 'teeth'} says what has the loss, which is not given")
     centre = design.centre_distance if centre_distance is None else centre_distance
     pinion, gear = design.gears["pinion"], design.gears["gear"]
-    if mate_tooth is not None and not 1 <= mate_tooth <= gear.teeth:
-        raise InputError(f"mate tooth {mate_tooth}: the gear has teeth from 1 to {gear.teeth}")
+    if mate_tooth is not None and not is_tooth(mate_tooth, gear):
+        raise InputError(f"mate tooth {mate_tooth}: the gear has teeth from 1 to {gear.teeth}, and one of them would be right")
     exact = exact_meshing(pinion, gear, centre)
     flanks = dict(zip(("pinion", "gear"), flanks_as_drawn(pinion, gear), strict=True))
     side = Side.of(drive or "left")

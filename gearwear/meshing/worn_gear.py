@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from numbers import Integral
 from pathlib import Path
 
 import numpy as np
 
 from gearwear.design.files.profiles import read_profiles
 from gearwear.design.files.traces import read_traces
+from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import listed, plural
@@ -82,13 +84,15 @@ def in_same_slices(pinion: ToothProfiles, gear: ToothProfiles) -> ToothProfiles:
 def uniform_loss(
     nominal: ToothProfiles, part: str, loss: float, teeth: Sequence[int] | None, side: Side
 ) -> tuple[WornGear, ToothProfiles]:
-    """A uniform loss on some teeth, counted from 1, and the profiles with it."""
+    """A uniform loss on some teeth, counted from 1, or on all where None is given, and the profiles with it."""
     gear = nominal.gear
     if not 0.0 < loss < math.inf:
         raise InputError(f"loss {loss:g} mm: must be above 0")
-    chosen = sorted({tooth - 1 for tooth in teeth or range(1, gear.teeth + 1)})
-    if not all(0 <= tooth < gear.teeth for tooth in chosen):
-        raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
+    asked = list(range(1, gear.teeth + 1) if teeth is None else teeth)
+    if not asked or not all(is_tooth(tooth, gear) for tooth in asked):
+        which = ", ".join(map(str, asked)) or "that are none"
+        raise InputError(f"teeth {which}: the {part} has teeth from 1 to {gear.teeth}, and whole numbers of them would be right")
+    chosen = sorted({int(tooth) - 1 for tooth in asked})
     half_angle = nominal.half_angle.copy()
     half_angle[chosen, side.index] -= loss / gear.normal_lever
     if not (half_angle.sum(axis=1) > 0.0).all():
@@ -99,6 +103,11 @@ def uniform_loss(
     words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
     arc = loss * gear.reference_radius / gear.normal_lever
     return WornGear(part, words, arc), replace(nominal, half_angle=half_angle)
+
+
+def is_tooth(tooth: object, gear: Gear) -> bool:
+    """Whether it is the number of a tooth of a gear, counted from 1."""
+    return isinstance(tooth, Integral) and not isinstance(tooth, bool) and 1 <= int(tooth) <= gear.teeth
 
 
 def teeth_words(teeth: Sequence[int], count: int) -> str:

@@ -262,6 +262,10 @@ def test_profiles_from_anywhere_are_as_good_as_a_folder(design):
         ({"loss": -0.1}, "loss -0.1 mm: must be above 0"),
         ({"loss": math.nan}, "must be above 0"),
         ({"loss": 0.1, "teeth": [0]}, "teeth 0: the pinion has teeth from 1 to 12"),
+        ({"loss": 0.1, "teeth": []}, "teeth that are none: the pinion has teeth from 1 to 12"),
+        ({"loss": 0.1, "teeth": [1.5]}, "teeth 1.5: the pinion has teeth from 1 to 12, and whole numbers of them would be right"),
+        ({"loss": 0.1, "teeth": "12"}, "teeth 1, 2: the pinion has teeth from 1 to 12"),
+        ({"mate_tooth": 1.5}, "mate tooth 1.5: the gear has teeth from 1 to 24"),
         ({"loss": 0.1, "wear": "worn"}, "wear and loss are both given"),
         ({"teeth": [3]}, "teeth says what has the loss"),
         ({"wear": "worn", "part": "gear"}, "part says what has the loss"),
@@ -270,6 +274,12 @@ def test_profiles_from_anywhere_are_as_good_as_a_folder(design):
 def test_wrong_arguments_in_python(design, wrong, message):
     with pytest.raises(gw.InputError, match=message):
         gw.study_meshing(gw.read_design(design), **wrong)
+
+
+def test_teeth_may_come_as_an_array(design):
+    pair = gw.read_design(design)
+    listed, array = (gw.study_meshing(pair, loss=0.05, teeth=teeth) for teeth in ([2, 1], np.array([1, 2])))
+    assert listed.worn == array.worn
 
 
 def test_teeth_too_thin_to_touch_on_both_flanks_are_studied_all_the_same(tmp_path):
