@@ -258,7 +258,7 @@ def write(
     also : sequence of str
         Of a comparison: "ply", "npz", "parquet", "topography", "glb".
     sections : sequence of float or None
-        Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
+        Of a comparison: heights of section curves in mm, on the face; an empty one: every 0.2 mm; None: no curves.
     law : WearStudy or None
         With a `PairStudy`: the wear law on measured traces.
     loaded : LoadedStudy or None
@@ -274,7 +274,7 @@ def write(
     Raises
     ------
     InputError
-        If the folder cannot be written to, or a word of `also` is unknown.
+        If the folder cannot be written to, a word of `also` is unknown, or a height lies off the face.
     """
     from gearwear.report.files.extras import EXTRAS
     from gearwear.report.files.meshing import write_study

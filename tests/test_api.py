@@ -221,6 +221,19 @@ class TestStages:
         with pytest.raises(gw.InputError, match=r"also = 'vrml'"):
             gw.write(results(), tmp_path, also=["vrml"])
 
+    @pytest.mark.parametrize(
+        ("sections", "words"),
+        [
+            ([float("nan"), -5.0], "sections nan, -5.0: heights from 0 to 15 mm would be right"),
+            ([7.0, 15.1], "sections 7.0, 15.1: heights from 0 to 15 mm"),
+            ("all", "sections a, l, l: heights from 0 to 15 mm"),
+        ],
+    )
+    def test_sections_off_the_face_are_refused_and_nothing_is_written(self, tmp_path, sections, words):
+        with pytest.raises(gw.InputError, match=words):
+            gw.write(results(), tmp_path / "out", sections=sections)
+        assert list(tmp_path.iterdir()) == []
+
     @pytest.mark.long
     @pytest.mark.usefixtures("blank_figures")
     def test_write_writes_what_the_dict_says(self, tmp_path):

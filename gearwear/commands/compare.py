@@ -96,7 +96,7 @@ def _run(arguments: Namespace) -> None:
         idle_processors(),
     ):
         design = with_details(read_design(design_file), arguments)
-        heights, ahead, also = _heights(arguments.sections, design), _ahead(arguments), _also(arguments)
+        heights, ahead, also = _heights(arguments.sections, design, arguments.part), _ahead(arguments), _also(arguments)
         check_folder(arguments.out)
         from gearwear.comparison.stations import compare
         from gearwear.report.write import write_results
@@ -126,19 +126,20 @@ def _run(arguments: Namespace) -> None:
         print_summary(results, files, arguments.out)
 
 
-def _heights(text: str | None, design: Design) -> list[float] | None:
-    """Heights of the sections asked for; an empty list stands for all."""
+def _heights(text: str | None, design: Design, part: str | None) -> list[float] | None:
+    """Heights of the sections asked for; an empty list stands for all. Which gear was scanned may not be known yet: the wider face has more."""
+    from gearwear.report.files.writing import check_heights
+
     if text is None:
         return None
     if text == "all":
         return []
-    width = max(gear.face_width for gear in design.gears.values())
+    known = [design.gears[part]] if part in design.gears else design.gears.values()
     try:
-        heights = [float(part) for part in text.split(",")]
+        heights = [float(one) for one in text.split(",")]
     except ValueError:
         heights = [math.nan]
-    if not all(0.0 <= z <= width for z in heights):
-        raise InputError(f"--sections {text}: heights from 0 to {width:g} mm, such as 0,{0.5 * width:g},{width:g}, or all")
+    check_heights(f"--sections {text}", heights, max(gear.face_width for gear in known))
     return heights
 
 

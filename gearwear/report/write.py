@@ -17,7 +17,7 @@ from gearwear.report.figures.arrays import ReportArrays, meshing_curves
 from gearwear.report.files.extras import EXTRAS
 from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.report.files.tables import write_sections_csv, write_sections_dxf, write_thickness_csv
-from gearwear.report.files.writing import output_folder, write_json
+from gearwear.report.files.writing import check_heights, output_folder, write_json
 from gearwear.report.records.comparison import document
 from gearwear.threads import on_one_thread
 from gearwear.wear.section_sums import stations
@@ -42,7 +42,7 @@ def write_results(
     out : Path
         Folder; files of the same names are replaced.
     heights : list of float or None
-        Heights of section curves in mm; an empty list: every 0.2 mm; None: no curves.
+        Heights of section curves in mm, on the face; an empty list: every 0.2 mm; None: no curves.
     also : frozenset of str
         What else to write, by the words of `gearwear.report.files.extras.EXTRAS`.
     page, pdf : bool
@@ -58,8 +58,10 @@ def write_results(
     Raises
     ------
     InputError
-        If the folder cannot be written to, or a package that a file needs is not installed.
+        If a height lies off the face, the folder cannot be written to, or a package that a file needs is not installed.
     """
+    if heights is not None:
+        check_heights(f"sections {', '.join(map(str, heights))}", heights, results.gear.face_width)
     with output_folder(out) as stage:
         files = ["report.json", *["report.html"] * page, *["report.pdf"] * pdf, "thickness.csv", "worn_profiles.npz"]
         writers: list[Callable[[], object]] = [

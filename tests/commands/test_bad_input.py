@@ -75,6 +75,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "nan.toml": ONE.replace("6.35", "nan").encode(),
         "misspelt.toml": ONE.replace("teeth", "tooth").encode(),
         "mates.toml": b"[pinion]\nteeth = 20\nmodule = 2\nface_width = 5\n[gear]\nteeth = 30\nmodule = 3\n",
+        "wide.toml": b"[pinion]\nteeth = 12\nmodule = 6.35\nface_width = 15\n[gear]\nteeth = 24\nface_width = 18\n",
         "jam.toml": PAIR.read_bytes().replace(b"114.3 ", b"113.9 "),
         "file": b"",
     }
@@ -186,6 +187,7 @@ ARGUMENTS = [
     ("compare one.toml one.toml good.ply", "the design comes first and once"),
     ("compare one.toml good.ply --sections 1,x", "--sections 1,x: heights from 0 to 15 mm"),
     ("compare one.toml good.ply --sections 7,15.5", "heights from 0 to 15 mm"),
+    ("compare wide.toml good.ply --part pinion --sections 15.5", "--sections 15.5: heights from 0 to 15 mm"),
     ("compare one.toml good.ply --sections nan", "heights from 0 to 15 mm"),
     ("compare one.toml good.ply --cycles 5", "--cycles needs --cycles-run"),
     ("compare one.toml good.ply --limit-backlash-mm 1", "--limit-backlash-mm needs --cycles-run"),

@@ -9,8 +9,9 @@ import math
 import os
 import secrets
 import shutil
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,18 @@ def check_folder(out: Path) -> None:
             raise PermissionError(errno.EACCES, "Permission denied")
     except OSError as error:
         raise unwritable(out, error) from None
+
+
+def check_heights(said: str, heights: Sequence[object], width: float) -> None:
+    """Refuse heights of section curves, as `said`, that are no numbers or lie off a face of `width`, mm.
+
+    Raises
+    ------
+    InputError
+        With the heights that the face has.
+    """
+    if not all(isinstance(z, Real) and 0.0 <= float(z) <= width for z in heights):  # refuses NaN too
+        raise InputError(f"{said}: heights from 0 to {width:g} mm would be right, such as 0,{0.5 * width:g},{width:g}")
 
 
 def unwritable(out: Path, error: OSError) -> InputError:
