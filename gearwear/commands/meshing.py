@@ -110,16 +110,16 @@ def _run(arguments: Namespace) -> None:
 
 def _law_of_traces(study: PairStudy, wear: Sequence[Path]) -> WearStudy | None:
     """The wear law on traces of a measuring machine, the first given; None where none were."""
-    traced = next((path for path in wear if path.suffix.lower() == ".csv"), None)
+    traced = next((at for at, path in enumerate(wear) if path.suffix.lower() == ".csv"), None)
     if traced is None:
         return None
-    from gearwear.design.files.traces import read_traces
     from gearwear.wear_law.from_traces import study_traces
 
-    part, profiles = read_traces(traced, study.design)
-    mate = study.design.mate_of(part)
+    worn = study.worn if traced == 0 else study.worn_mate
+    assert worn is not None
+    mate = study.design.mate_of(str(worn.part))
     assert mate is not None
-    return study_traces(profiles, mate, study.exact.centre_distance, study.drive_side)
+    return study_traces(study.measured[traced], mate, study.exact.centre_distance, study.drive_side)
 
 
 def _under_load(study: PairStudy, torque: float | None) -> LoadedStudy | None:

@@ -120,6 +120,8 @@ class PairStudy(Card):
         What is worth knowing, each a sentence.
     flanks : (ToothProfiles, ToothProfiles)
         Of pinion and gear, as they were meshed.
+    measured : tuple of ToothProfiles
+        As they were read, in the order given; empty where none were.
     """
 
     design: Design
@@ -133,6 +135,7 @@ class PairStudy(Card):
     shafts: TakeUp | None
     notes: tuple[str, ...]
     flanks: tuple[ToothProfiles, ToothProfiles]
+    measured: tuple[ToothProfiles, ...] = ()
 
     @property
     def flank_words(self) -> str:
@@ -331,6 +334,7 @@ def study_meshing(
     flanks = dict(zip(("pinion", "gear"), flanks_as_drawn(pinion, gear), strict=True))
     side = Side.of(drive or "left")
     worn = as_measured(design, measured)
+    as_read = tuple(profiles for _, profiles in worn)
     notes = list(_notes(design, exact))
     if loss is not None:
         chosen = part or "pinion"
@@ -364,6 +368,7 @@ def study_meshing(
         shafts=shafts,
         notes=tuple(notes),
         flanks=(flanks["pinion"], flanks["gear"]),
+        measured=as_read,
     )
 
 

@@ -63,12 +63,20 @@ def test_a_flank_nobody_measured_is_no_evidence(tmp_path):
     assert widths[0] > 0.5 * widths[1] > 0.0
 
 
-def test_the_command_says_and_writes_it(tmp_path, capsys):
-    traces = _write(tmp_path / "traces.csv", 5.0)
+def test_the_command_says_and_writes_it(tmp_path, capsys, monkeypatch):
+    traces, read = _write(tmp_path / "traces.csv", 5.0), []
+
+    def counted(path, design):
+        read.append(path)
+        return read_traces(path, design)
+
+    for module in ("meshing.worn_gear", "design.files.traces"):
+        monkeypatch.setattr(f"gearwear.{module}.read_traces", counted)
     assert main([str(gw.example()), "--wear", str(traces), "--drive", "left", "--out", str(tmp_path / "out")]) == 0
     assert "wear law" in capsys.readouterr().out.lower()
     law = json.loads((tmp_path / "out" / "meshing.json").read_text())["wear_law"]
     assert law["fitted"] and law["flank"] == "left" and law["teeth"] == [1, 2, 3, 4, 5]
+    assert read == [traces]  # once: a file of a machine may be large
 
 
 def _law(text: str, tmp_path: Path) -> dict:
