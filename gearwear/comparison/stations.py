@@ -164,7 +164,8 @@ def compare(
         law: WearStudy | None = None
         if design.pair is not None:
             progress("meshing")
-            side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
+            side, mate = wear.drive_side, design.mate_of(measured.part)
+            assert mate is not None
             contact, spread = running.against_mate(design, measured, side)
             study = partial(study_wear, wear, points, as_made)
             law = study(side, mate, design.centre_distance, measured.loop, scatter, ahead)
