@@ -1,6 +1,7 @@
-"""gearwear: from the scan of a worn spur gear to the metal that is gone, what it does to the meshing, and what caused the rest.
+"""gearwear: from the scan of a worn gear to the metal that is gone, what it does to the meshing, and what caused the rest.
 
-``import gearwear as gw`` loads nothing; the names below are loaded when they are first used (PEP 562).
+The gear is spur, helical, double helical or a ring. ``import gearwear as gw`` loads nothing; the names below are loaded when they are
+first used (PEP 562).
 
 >>> import gearwear as gw
 >>> design = gw.read_design(gw.example("design.toml"))

@@ -1,4 +1,4 @@
-"""``python -m gearwear.models``: the nominal gears of a design as exact STEP models."""
+"""``gearwear models [DESIGN.toml]``: the nominal gears of a design as exact STEP models."""
 
 from __future__ import annotations
 

@@ -140,7 +140,7 @@ class Wear(Card):
         How far left and right flanks that are worn throughout stand above the gear as made where they are highest, mm (`standing_proud`); wear is
         counted from there.
     unsure : float
-        What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³ (`unsure_loss`).
+        What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³ (`limits.upper_limit`).
     """
 
     regions: tuple[WearRegion, ...]

@@ -9,7 +9,7 @@ over it; the Hertzian width cancels, and what is left is exactly ::
 with the load per face width w (N/mm) and the specific sliding K of that flank. On helical teeth the load per length of line is less by
 cos β_b and the way along the profile across the Hertzian band longer by as much: with the normal tooth force it is the same. The coefficient k of lubricated steel
 gears spans four decades and scatters by half in one rig, so there is no default: nothing is predicted from it, it is
-only fitted (`wear_fit`). Where no pair touches, off the path of contact, nothing slides and the law has no wear.
+only fitted (`fit`). Where no pair touches, off the path of contact, nothing slides and the law has no wear.
 """
 
 from __future__ import annotations
