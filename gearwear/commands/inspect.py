@@ -179,8 +179,8 @@ def _run(arguments: Namespace) -> None:
             gear = measured.gear
             doubt = wrong_design(gear, seen_radii(measured.placed, gear))
             which = f"the {half} half of a double helical gear" if half is not None else ""
-            beside = (_taken_out(measured.loop), _unexplained(measured.loop, gear))
-            notes = [*filter(None, [which, doubt, *beside]), *measured.notes]
+            left = (_taken_out(measured.loop), _unexplained(measured.loop, gear))
+            notes = [*filter(None, [which, doubt, *left]), *measured.notes]
             record = inspection_record(
                 design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command, about_teeth
             )
