@@ -11,7 +11,6 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.effects.base import MEASURED, SCALE_LIMIT
-from gearwear.diagnose.effects.scale import SCALE
 from gearwear.diagnose.effects.view_registration import VIEW_REGISTRATION
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.diagnose.loop import LEVEL_GROUP
@@ -51,15 +50,14 @@ def doubts_of(gear: Gear, drawn: Gear, placed: PlacedScan, noise: float) -> tupl
 
 def said_of_scale(loop: Loop | None) -> tuple[str, ...]:
     """That the scale found is more than a calibrated scanner may be off by."""
-    for effect in () if loop is None else loop.effects:
-        ratio = float(effect.amplitudes[0])
-        if effect.name == SCALE and abs(ratio) > SCALE_LIMIT:
-            way = "larger" if ratio > 0.0 else "smaller"
-            return (
-                f"all surfaces of the scan are {100.0 * abs(ratio):.2f} % {way} than drawn, more than a calibrated scanner may be off by: check its unit and scale. "
-                "It is taken out as the scanner's; a gear that shrank or grew as a whole looks the same",
-            )
-    return ()
+    ratio = 0.0 if loop is None else loop.scale
+    if abs(ratio) <= SCALE_LIMIT:
+        return ()
+    way = "larger" if ratio > 0.0 else "smaller"
+    return (
+        f"all surfaces of the scan are {100.0 * abs(ratio):.2f} % {way} than drawn, more than a calibrated scanner may be off by: check its unit and scale. "
+        "It is taken out as the scanner's; a gear that shrank or grew as a whole looks the same",
+    )
 
 
 def beside_views(loop: Loop, placed: PlacedScan, cells: Cells, noise: float) -> Loop:

@@ -19,6 +19,7 @@ from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects import named_effects
 from gearwear.diagnose.effects.base import MADE, Context, Kind
 from gearwear.diagnose.effects.root_form import ROOT_FORM
+from gearwear.diagnose.effects.scale import EFFECT, SCALE
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
 from gearwear.diagnose.jumps import jump_deviations
@@ -175,6 +176,12 @@ class Loop(Card):
             for side, column in zip(sorted(self.worn_sides), self.made.T, strict=False):
                 known[side.index] = math.hypot(known[side.index], float(column.max(initial=0.0)))
         return known[0], known[1]
+
+    @property
+    def scale(self) -> float:
+        """By what ratio the scan was found to be too large; 0 where it was not."""
+        (ppm,) = EFFECT.parameters
+        return sum(1e-6 * float(np.max(effect.parameters[ppm.name].value)) for effect in self.effects if effect.name == SCALE)
 
     @property
     def left(self) -> Floats:

@@ -17,11 +17,12 @@ from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.diagnose.pattern import Pattern
 from gearwear.placing.accord import ViewAccord
+from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
 from gearwear.report.words.numbers import quantity, which_flanks
-from gearwear.report.words.verdict import doubts, key_figures, loop_words, verdict
+from gearwear.report.words.verdict import doubts, key_figures, loop_words, verdict, wrong_design
 from gearwear.wear.limits import FlankLimit
 from tests.report.fake import bare_results, changed, fake_regions, fake_results, fake_thickness
 
@@ -156,6 +157,9 @@ DOUBTFUL = {
     "the flanks are those of another gear or out of scale: their base circle is some": lambda r: changed(
         r, "seen.base", 1.024 * r.gear.base_radius
     ),
+    "flanks and tips are both 0.6 % smaller than drawn, as those of module 6.31 would be": lambda r: changed(
+        changed(r, "seen.base", 0.994 * r.gear.base_radius), "seen.tip", 0.9945 * r.gear.tip_radius
+    ),
     "view 2 could not be placed": lambda r: with_views(r, True, False),
 }
 
@@ -165,6 +169,19 @@ def test_a_doubtful_result_is_hedged_in_the_verdict_and_listed(said):
     results = DOUBTFUL[said](fake_results())
     assert spoken(verdict(results)).startswith(f"Doubtful, because {said}")
     assert any(said in spoken(doubt) for doubt in doubts(results))
+
+
+@pytest.mark.parametrize(("base", "tip"), [(0.994, 1.0), (0.994, 1.006), (1.0, 0.9945), (0.9985, 0.9985)])
+def test_flanks_or_tips_alone_are_of_no_other_module(base, tip):
+    results = changed(fake_results(), "seen.base", base * fake_results().gear.base_radius)
+    results = changed(results, "seen.tip", tip * results.gear.tip_radius)
+    assert "module" not in verdict(results)
+
+
+def test_what_a_scale_found_makes_larger_is_no_other_module():
+    gear = fake_results().gear
+    assert wrong_design(gear, SeenRadii(1.006 * gear.base_radius, 1.006 * gear.tip_radius, gear.root_radius), scale=0.006) is None
+    assert "6.39" in wrong_design(gear, SeenRadii(1.006 * gear.base_radius, 1.006 * gear.tip_radius, gear.root_radius))
 
 
 def test_flanks_seen_too_thinly_beside_wear_are_told_once():

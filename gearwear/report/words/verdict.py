@@ -38,6 +38,9 @@ RIM_OFF_MODULES, RIM_OFF_MM = {"tip": 0.08, "root": 0.12}, 0.05
 BASE_OFF = 0.01
 """Relative difference of the flanks' base circle from the design's, beyond what makers and scanners leave: neighbours among modules and pressure
 angles in use differ by 1.6 % and more."""
+MODULE_OFF, MODULE_ALIKE = 0.003, 0.25
+"""Relative difference of base and tip circle from the design's, beside a scale that was found, from which on they are of another module; and by what share of it
+both may differ: tips alone, or flanks alone, are off by as much on gears as they are made."""
 LEAST_RISE = 0.02
 """Rise over the flank, mm, that goes with it, at least: on small gears a base circle that is off by so little is a profile slope as ground."""
 FAR_OFF, FAR_OFF_MODULES = 0.1, 0.02
@@ -71,7 +74,7 @@ def verdict(results: Results) -> str:
     if not grave:
         return sentence(text)
     held = f"As it stands, {text}."
-    if wrong_design(results.gear, results.seen, results.rms_left) is not None:
+    if _wrong_design(results) is not None:
         held = "What is said of wear holds only if the design is right."
     return f"{sentence(f'doubtful, because {listed(grave)}')} {held}"
 
@@ -292,11 +295,16 @@ def grave_doubts(results: Results) -> list[str]:
     if coverage["flank"] < LITTLE_SEEN:
         which = f", of the {unseen[0]} ones next to nothing" if len(unseen) == 1 else ""
         grave.append(f"only {100 * coverage['flank']:.0f}{SPACE}% of the flanks was seen{which}")
-    other = wrong_design(results.gear, results.seen, results.rms_left)
+    other = _wrong_design(results)
     return grave if other is None else [*grave, other]
 
 
-def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0) -> str | None:
+def _wrong_design(results: Results) -> str | None:
+    scale = 0.0 if results.loop is None else results.loop.scale
+    return wrong_design(results.gear, results.seen, results.rms_left, scale)
+
+
+def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0, scale: float = 0.0) -> str | None:
     """Why a scan is more likely of another gear than the design's; None where nothing says so.
 
     Parameters
@@ -307,14 +315,24 @@ def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0) -> str | No
         What the scan shows of its size.
     rms_left : float
         RMS outside the wear with all that was found taken out, mm.
+    scale : float
+        By what ratio the scan was found to be too large.
     """
-    other = abs(seen.base / gear.base_radius - 1.0)
-    if other > BASE_OFF and other * abs(gear.tip_roll - gear.form_roll) > LEAST_RISE:
+    other, flank = abs(seen.base / gear.base_radius - 1.0), abs(gear.tip_roll - gear.form_roll)
+    if other > BASE_OFF and other * flank > LEAST_RISE:
         text = (
             f"the flanks are those of another gear or out of scale: their base circle is some {_diameter(seen.base)} in diameter"
         )
         return f"{text} and the design's {_diameter(gear.base_radius)}; check module and pressure angle"
     module = gear.spec.normal_module
+    base, tip = seen.base / gear.base_radius - 1.0 - scale, seen.tip / gear.tip_radius - 1.0 - scale
+    far = min(abs(base), abs(tip)) > MODULE_OFF and abs(base) * flank > LEAST_RISE and abs(tip) * gear.tip_radius > RIM_OFF_MM
+    if far and abs(base - tip) < MODULE_ALIKE * abs(base):
+        way = "larger" if base > 0.0 else "smaller"
+        return (
+            f"flanks and tips are both {100.0 * abs(base):.1f}{SPACE}% {way} than drawn, as those of module {number(module * (1.0 + base), 2)} would be; "
+            "check the module"
+        )
     off = []
     for rim, radius, drawn in (("tip", seen.tip, gear.tip_radius), ("root", seen.root, gear.root_radius)):
         if abs(radius - drawn) > RIM_OFF_MODULES[rim] * module + RIM_OFF_MM:
