@@ -16,9 +16,9 @@ from gearwear.design.compiled_locate import constants_of
 from gearwear.design.surface import FLANK, OTHER, SurfacePoints
 from gearwear.placing.cells import CellGrid
 from gearwear.placing.compiled_index import division_of
+from gearwear.placing.low_tips import highest_flank
 from gearwear.placing.pits import DEEPEST, FarTally
 from gearwear.placing.pose import Pose
-from gearwear.placing.registration import highest_flank
 from gearwear.placing.sums import CellSums
 from gearwear.wear.section_sums import SectionBand, SectionSums
 

@@ -25,7 +25,8 @@ from gearwear.meshing.linear import LinearResult
 from gearwear.placing.cells import Cells
 from gearwear.processors import each
 from gearwear.wear.regions import Wear
-from gearwear.wear.thickness import SectionThickness, ThinnestTooth
+from gearwear.wear.thickness import SectionThickness
+from gearwear.wear.tooth_summary import ThinnestTooth
 
 SHARE = 0.1
 """Part of the largest cause from which on a lesser one is named beside it."""

@@ -28,10 +28,10 @@ from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context,
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.layers import layers_apart, said_of_layers
+from gearwear.placing.low_tips import below_tips
 from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose
 from gearwear.placing.proportion import out_of_scale
-from gearwear.placing.registration import below_tips
 from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.strays import near_centre

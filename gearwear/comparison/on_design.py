@@ -8,8 +8,8 @@ from typing import Protocol
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import Bands, SurfacePoints, locate
+from gearwear.placing.low_tips import below_tips
 from gearwear.placing.pose import Pose
-from gearwear.placing.registration import below_tips
 
 
 class Places(Protocol):

@@ -17,9 +17,10 @@ from gearwear.comparison.pass_limits import PassLimits
 from gearwear.comparison.relocated import FinalMotion, Relocation
 from gearwear.design.surface import OTHER, SurfacePoints
 from gearwear.placing.cells import CellGrid, Cells, cells_of
+from gearwear.placing.low_tips import below_tips, tip_shift
 from gearwear.placing.pits import Pits, hanging_together
 from gearwear.placing.pose import Pose
-from gearwear.placing.registration import Registration, below_tips, refit, tip_shift
+from gearwear.placing.registration import Registration, refit
 from gearwear.placing.sums import CellSums
 from gearwear.placing.views import PlacedScan
 from gearwear.scan.pieces import Chunks

@@ -15,9 +15,10 @@ from gearwear.diagnose.loop import Loop
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.placing.cells import CellGrid, Cells, bin_points
+from gearwear.placing.low_tips import below_tips, tip_shift
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import Pose, motion_columns, small_motion
-from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit, tip_shift
+from gearwear.placing.registration import narrowed_bands, stray_limit
 from gearwear.placing.strays import StrayLimits
 from gearwear.placing.views import PlacedScan
 

@@ -41,7 +41,8 @@ from gearwear.running.found import SecondLoop
 from gearwear.wear.breakage import Broken
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
-from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
+from gearwear.wear.thickness import SectionThickness
+from gearwear.wear.tooth_summary import ThinnestTooth, ToothSummary
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
 

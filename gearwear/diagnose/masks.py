@@ -12,7 +12,7 @@ from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, TIP
 from gearwear.design.twist import section_angle
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
-from gearwear.placing.registration import OFF
+from gearwear.placing.low_tips import OFF
 from gearwear.placing.side_maps import between, make_side_maps, rim, window_mean, worn_cells
 from gearwear.robust import median_scale, tukey_weight
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from gearwear.design.side import Side
@@ -141,6 +141,9 @@ def _thickness(report: Json) -> Iterator[Quantity]:
     ]
     if losses:
         worst = max(losses, key=lambda row: row.value)
+        most = report.get("most_lost")  # without the bias of looking for the greatest; reports of older versions have none
+        if most is not None:
+            worst = replace(worst, value=_number(most["value_mm"]), std=_number(most.get("std_mm")), tooth=int(most["tooth"]))
         yield Quantity(name=worst.name, scope=GEAR, value=worst.value, std=worst.std, tooth=worst.tooth)
     least: Json | None = report.get("thinnest")
     if least is not None:

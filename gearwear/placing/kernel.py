@@ -379,7 +379,7 @@ def move(rotation, translation, b):
 
 @step
 def below_tips(c, s, b):
-    """Take points of flanks higher than tips go off them: `registration.below_tips`."""
+    """Take points of flanks higher than tips go off them: `low_tips.below_tips`."""
     for i in range(BLOCK):
         high = c.orientation * max(b[RADIUS + i], c.base_radius) > s.highest
         b[CODE + i] = OTHER if (b[CODE + i] == FLANK) & high else b[CODE + i]

@@ -47,8 +47,6 @@ part's own, wherever the search began, and what hangs on it goes no other way fo
 MOST_PASSES = 8
 LEAST_ON_FACE = 10
 """Points well inside the outline from which an end face counts as seen."""
-OFF = 3.0
-"""Standard deviations of a point: tips lower than drawn by more let points of the land pass for the flank's."""
 LEAST_SHARE_ON_DESIGN = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
 HEIGHT = np.array([False, False, True, False, False, False])
@@ -420,32 +418,6 @@ def stray_limit(located: SurfacePoints) -> float:
     if not np.isfinite(scale):
         scale = median_scale(located.deviation)[1]
     return 6.0 * max(scale, 1e-6)
-
-
-def tip_shift(located: SurfacePoints) -> float:
-    """How far the tips lie above those drawn, mm."""
-    tips = located.deviation[located.surface == TIP]
-    return float(np.median(tips)) if len(tips) else 0.0
-
-
-def below_tips(located: SurfacePoints, gear: Gear, noise: float, shift: float | None = None) -> SurfacePoints:
-    """The points without those on flanks that lie as high as the tips do, where these are lower than drawn.
-
-    A point of the land next to the corner is then nearer to the flank, as that is drawn up to the higher tip, than to the tip. `shift` (mm)
-    is how far the tips lie above those drawn; None: as these points say.
-    """
-    highest = highest_flank(gear, noise, tip_shift(located) if shift is None else shift)
-    if highest == np.inf:
-        return located
-    flank = np.flatnonzero(located.surface == FLANK)
-    roll = located.own_roll(gear)[flank]
-    land = flank[gear.orientation * np.hypot(roll, gear.base_radius) > highest]
-    return located.off_surface(land)
-
-
-def highest_flank(gear: Gear, noise: float, shift: float) -> float:
-    """Up to which radius (mm, times ι) a point may be a flank's: all, where the tips are not lower than drawn; parameters as `below_tips`."""
-    return gear.orientation * gear.tip_radius + shift - OFF * noise if shift < -OFF * noise else np.inf
 
 
 def _check_fit(located: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:

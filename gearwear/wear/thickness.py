@@ -22,6 +22,7 @@ from gearwear.wear.bend import LEAST_SPREAD, without_ridge
 from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
 from gearwear.wear.section_sums import SectionBand, SectionSums
+from gearwear.wear.tooth_summary import MostLost, ThinnestTooth, ToothSummary
 
 LEAST_POINTS = 3
 ENOUGH_POINTS = 12
@@ -36,65 +37,6 @@ SLOPED = 2.0
 """Standard deviations, of their difference, that two means may differ by for having looked for the less of them."""
 FEWEST_POINTS = 6
 """The same on a tooth that was seen less well than most."""
-
-
-@dataclass(frozen=True, slots=True)
-class ToothSummary:
-    """Thickness of one tooth.
-
-    Parameters
-    ----------
-    tooth : int
-        0-based.
-    nominal, mean, least : float
-        Arc in mm; nan where the tooth was not seen on both sides.
-    greatest_loss : float
-        As-made − measured where it is greatest, mm.
-    at_z : float
-        Height of the least, mm.
-    std : float
-        Standard deviation of one section's arc, mm.
-    least_std, loss_std : float
-        Standard deviations of the least and of the greatest loss, mm.
-    """
-
-    tooth: int
-    nominal: float
-    mean: float
-    least: float
-    greatest_loss: float
-    at_z: float
-    std: float
-    least_std: float = math.nan
-    loss_std: float = math.nan
-
-    @property
-    def seen(self) -> bool:
-        return math.isfinite(self.mean)
-
-
-@dataclass(frozen=True, slots=True)
-class ThinnestTooth:
-    """The least thickness of the gear.
-
-    Parameters
-    ----------
-    tooth : int
-        0-based; the likeliest where several are about as thin.
-    value, std : float
-        Least true arc of all teeth, mm. Looking for the least of many noisy values finds one that is too small: that bias is taken off.
-    low, high : float
-        95 % interval, mm.
-    at_z : float
-        Height on that tooth, mm.
-    """
-
-    tooth: int
-    value: float
-    std: float
-    low: float
-    high: float
-    at_z: float
 
 
 @dataclass(frozen=True, repr=False)  # no slots: what is asked for again and again is kept
@@ -303,6 +245,17 @@ class SectionThickness(Card):
         """The least thickness of the gear; None where no tooth was seen on both sides."""
         return self._thinnest
 
+    def most_lost(self) -> MostLost | None:
+        """The greatest loss of the gear; None where no tooth was seen on both sides."""
+        if not np.isfinite(self.lost).any():
+            return None
+        least, at_z, _ = self._most_lost
+        return MostLost(least.curve, -least.overall, least.overall_std, float(at_z[least.curve]))
+
+    @cached_property
+    def _most_lost(self) -> tuple[Least, Floats, Floats]:
+        return self._least(self.arc - self.as_made)
+
     @cached_property
     def _least_arc(self) -> tuple[Least, Floats, Floats]:
         return self._least(self.arc, self.drawn, self.made)
@@ -310,7 +263,7 @@ class SectionThickness(Card):
     @cached_property
     def _teeth(self) -> tuple[ToothSummary, ...]:
         least, at_z, _ = self._least_arc
-        lost, _, _ = self._least(self.arc - self.as_made)
+        lost, _, _ = self._most_lost
         result = []
         for tooth, arc in enumerate(self.arc):
             if not np.isfinite(least.value[tooth]):

@@ -18,7 +18,7 @@ from gearwear.design import parse_design, read_design
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import locate
 from gearwear.report.records.comparison import document
-from gearwear.wear.thickness import ThinnestTooth
+from gearwear.wear.tooth_summary import ThinnestTooth
 from tests.commands.doors import ALONE, PAIR, scan_file
 from tests.synthetic import PINION, Effect, Hole, Patch, Recipe
 

@@ -8,7 +8,7 @@ from gearwear.comparison.closing import find_effects
 from gearwear.comparison.measured_gear import register
 from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK, OTHER, locate
-from gearwear.placing.registration import below_tips
+from gearwear.placing.low_tips import below_tips
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Effect, GearNumbers, Recipe, Texture, make_scan
 

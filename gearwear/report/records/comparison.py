@@ -65,6 +65,7 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         "wear": _wear(results),
         "thickness": _thickness(results),
         "thinnest": _thinnest(results),
+        "most_lost": _most_lost(results),
         "root": _root(results.measured.root),
         "broken": [
             {
@@ -411,6 +412,13 @@ def _thinnest(results: Results) -> Json | None:
         "high_mm": least.high,
         "at_z_mm": least.at_z,
     }
+
+
+def _most_lost(results: Results) -> Json | None:
+    most = results.wear.thickness.most_lost()
+    if most is None:
+        return None
+    return {"tooth": most.tooth + 1, "value_mm": most.value, "std_mm": most.std, "at_z_mm": most.at_z}
 
 
 def _thickness(results: Results) -> list[Json]:
