@@ -22,7 +22,6 @@ from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
-from gearwear.inspection.settings import DATUM_WORDS
 from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns, trace_columns
@@ -225,7 +224,7 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     """
     settings = inspection.settings
     asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by value, tol. of it"
-    said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst flanks in µm, U with k = 2", "dim")]
+    said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst in µm, U (k = 2); axis: {settings.axis or 'teeth'}", "dim")]
     heads = "".join(f"{f'{side} value':>14}{'U':>6}{'tol.':>7}  {'class':<2}" for side in Side)
     said.append((f"{'':12}{heads}".rstrip(), "bold"))
     rows: dict[str, dict[Side | None, Finding]] = {}
@@ -250,7 +249,6 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     whole = inspection.iso_class
     if whole is not None and settings.required_class is None:
         said.append((f"class of the gear: {whole}", "bold"))
-    said.append((f"pitch and runout are about the axis of the {DATUM_WORDS.get(settings.axis or '', 'teeth')}", "dim"))
     if any(finding.grade.verdict is Verdict.NOT_RESOLVABLE for finding in inspection.findings):
         share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
         said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
