@@ -55,6 +55,8 @@ def _cost(fit: Fit, problem: Problem, model: Model, worn: frozenset[Side]) -> fl
         # Without the columns next to the form circle: where contact begins, and wear with it, no drawing of one gear tells.
         own, known, roll = (cells.grid.flank_shape(of)[:, side.index, :, 1:] for of in (left, weight, cells.points.roll))
         often = np.isfinite(own).mean(axis=0) > 0.5
+        if not often.any():
+            continue
         common, heavy = np.nanmedian(own[:, often], axis=0), np.sqrt(known[:, often].sum(axis=0))
         law = law_shapes(np.nanmean(roll[:, often], axis=0), problem.context)
         losses = -np.column_stack([law, np.ones(len(law))])

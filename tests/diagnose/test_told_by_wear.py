@@ -1,11 +1,18 @@
 """Taper or helix slope, where fillets do not turn with the flanks and one side is worn: the worn side tells, by how it would have to be worn."""
 
+import numpy as np
 import pytest
 
 from benchmarks.loop_study.run import study
 from benchmarks.loop_study.scenario import Scenario
+from gearwear.api import as_scan
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import register
+from gearwear.design.pair import Design
+from gearwear.design.side import Side
 from gearwear.diagnose.told_by_wear import told_by_wear
-from tests.synthetic import Effect, Recipe
+from tests.placing.placing import designed
+from tests.synthetic import Effect, Recipe, make_scan
 from tests.synthetic.removal import SlidingWear
 
 
@@ -42,3 +49,15 @@ def test_without_a_worn_side_nothing_is_asked():
 
     model = (object(),)
     assert told_by_wear(None, NoneWorn, model) is model
+
+
+def test_a_worn_side_that_hardly_any_tooth_shows_tells_nothing():
+    """A third of the teeth, as one view sees them: the choice stays the search's, and nothing fails."""
+    recipe = Recipe(
+        noise_um=8.0, jitter=1.0, pose="none", fillets_follow=False, effects=(Effect("taper", {"taper_um": 30.0}),),
+        wear=(SlidingWear(50.0, side=-1),),
+    ).of_size(30_000)  # fmt: skip
+    points = make_scan(recipe, 5).points
+    seen = np.abs(np.arctan2(points[:, 1], points[:, 0])) < np.pi / 3.0
+    measured = find_effects(register(Design({"gear": designed()}), as_scan(points[seen])), worn=frozenset({Side.RIGHT}))
+    assert {effect.name for effect in measured.loop.effects} & {"taper", "helix_slope"}
