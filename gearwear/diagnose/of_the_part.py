@@ -21,7 +21,7 @@ from gearwear.diagnose.search import Problem, exchange
 def left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:
     """The model with the maker's effect in place of a scanner's that cannot be told from it: what may be the part's own stays measured.
 
-    With `form`, what explains nearly as much cannot be told from it either, and a coat is no more likely than a thick tooth.
+    With `form`, and of what scanners seldom do, what explains nearly as much cannot be told from it either: a coat is no more likely than a thick tooth then.
     """
     for index, candidate in enumerate(model):
         effect = candidate.effect
@@ -29,7 +29,7 @@ def left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:
             continue
         rest = model[:index] + model[index + 1 :]
         others = list(replacements(problem, model, index))
-        if form:
+        if form or not effect.usual:
             others += [(other, (*rest, other)) for other in alike(problem, model, index)]
         for other, replaced in others:
             if other.effect.kind is Kind.MANUFACTURE:
