@@ -177,8 +177,7 @@ def _run(arguments: Namespace) -> None:
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
             gear = measured.gear
-            scale = 0.0 if measured.loop is None else measured.loop.scale
-            doubt = wrong_design(gear, seen_radii(measured.placed, gear), scale=scale)
+            doubt = wrong_design(gear, seen_radii(measured.placed, gear), scale=measured.scale)
             which = f"the {half} half of a double helical gear" if half is not None else ""
             left = (_taken_out(measured.loop), _unexplained(measured.loop, gear))
             notes = [*filter(None, [which, doubt, *left]), *measured.notes]

@@ -31,7 +31,7 @@ from gearwear.placing.layers import layers_apart, said_of_layers
 from gearwear.placing.low_tips import below_tips
 from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose
-from gearwear.placing.proportion import out_of_scale
+from gearwear.placing.proportion import common_ratio
 from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.strays import near_centre
@@ -173,6 +173,11 @@ class MeasuredGear(Card):
         return sides_of(datum.worn_side) if self.loop is None else self.loop.worn_sides
 
     @property
+    def scale(self) -> float:
+        """By what ratio the scan was found to be too large; 0 where it was not, or no loop was closed."""
+        return 0.0 if self.loop is None else self.loop.scale
+
+    @property
     def gone(self) -> Bools:
         """Cells of the sides that are broken off, (teeth, 2, rows, columns)."""
         return flanks_gone(self.broken, self.cells.grid)
@@ -193,7 +198,7 @@ class MeasuredGear(Card):
         placed = doubts_of(self.gear, self.design.gears[self.part], self.placed, self.noise)
         return (
             *placed,
-            *(said_of_scale(self.loop) if self.design.scanner.scale_limit is None else ()),
+            *(said_of_scale(self.scale) if self.design.scanner.scale_limit is None else ()),
             *said_of_layers(self.first, self.layered),
             *broken_sentences(self.broken),
             *self.placed.registration.notes,
@@ -439,6 +444,6 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
         length = math.sqrt(centre**2 - (gear.base_radius + ring * mate.base_radius) ** 2)
         line = (ring * mate.teeth / gear.teeth, mate.orientation * length)
     limit = design.scanner.scale_limit
-    if limit is None and (ratio := out_of_scale(placed.located, cells.grid.gear)) is not None:
+    if limit is None and (ratio := common_ratio(placed.located, cells.grid.gear)) is not None:
         limit = max(SCALE_LIMIT, 2.0 * abs(ratio))  # what a calibrated scanner may do is no limit to one that is not
     return make_context(cells, placed.registration.pose.rotation, planar, line, limit)

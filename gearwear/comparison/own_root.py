@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, ROOT, locate
-from gearwear.placing.proportion import out_of_scale
+from gearwear.placing.proportion import common_ratio
 from gearwear.placing.root import Root, fit_root
 from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.types import Scan
@@ -49,5 +49,5 @@ def _of_whole_teeth(placed: PlacedScan, gear: Gear, planar: bool) -> Root:
     """The root that the teeth share; a fracture is none, and of a scan that is out of scale the gear has another one than it shows."""
     whole = on_whole_teeth(placed.measured, gear, planar)
     root = fit_root(placed.located.take(whole), gear)
-    ratio = None if root.fits_design else out_of_scale(placed.located, gear)
+    ratio = None if root.fits_design else common_ratio(placed.located, gear)
     return root if ratio is None else fit_root(locate(placed.measured[whole] / (1.0 + ratio), gear), gear)

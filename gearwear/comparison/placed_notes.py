@@ -48,9 +48,8 @@ def doubts_of(gear: Gear, drawn: Gear, placed: PlacedScan, noise: float) -> tupl
     return (*said, *said_of_views(placed.accords, taken, placed.told, noise, placed.scatters))
 
 
-def said_of_scale(loop: Loop | None) -> tuple[str, ...]:
-    """That the scale found is more than a calibrated scanner may be off by."""
-    ratio = 0.0 if loop is None else loop.scale
+def said_of_scale(ratio: float) -> tuple[str, ...]:
+    """That the scale found, `ratio`, is more than a calibrated scanner may be off by."""
     if abs(ratio) <= SCALE_LIMIT:
         return ()
     way = "larger" if ratio > 0.0 else "smaller"

@@ -18,7 +18,7 @@ LEAST_POINTS = 100
 """Of a surface, that it tells anything."""
 
 
-def out_of_scale(located: SurfacePoints, gear: Gear) -> float | None:
+def common_ratio(located: SurfacePoints, gear: Gear) -> float | None:
     """The ratio by which all surfaces of a scan are larger than the design's, less 1; None where they differ in it, or too few were seen.
 
     Parameters

@@ -11,7 +11,7 @@ from gearwear.comparison.measured_gear import register
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FLANK, TIP, SurfacePoints
-from gearwear.placing.proportion import ALIKE, LEAST_POINTS, out_of_scale
+from gearwear.placing.proportion import ALIKE, LEAST_POINTS, common_ratio
 from tests.placing.placing import designed
 from tests.synthetic import PINION, Effect, Recipe, make_scan
 
@@ -68,9 +68,9 @@ def by(ratio, added=0.0):
 def test_all_surfaces_in_one_proportion_are_a_scale():
     thick = 0.03  # of the teeth: no slope
     located, gear = surfaces(flank=by(0.008, thick), tip=by(0.008), low=by(0.008, 0.01), high=by(0.008, -0.01))
-    assert out_of_scale(located, gear) == pytest.approx(0.008)
+    assert common_ratio(located, gear) == pytest.approx(0.008)
     located, gear = surfaces(flank=by(-0.003), tip=by(-0.003), bore=by(-0.003))
-    assert out_of_scale(located, gear) == pytest.approx(-0.003)
+    assert common_ratio(located, gear) == pytest.approx(-0.003)
 
 
 @pytest.mark.parametrize(
@@ -86,4 +86,4 @@ def test_all_surfaces_in_one_proportion_are_a_scale():
     ],
 )
 def test_one_surface_that_is_not_makes_it_none(deviation):
-    assert out_of_scale(*surfaces(**deviation)) is None
+    assert common_ratio(*surfaces(**deviation)) is None

@@ -239,23 +239,20 @@ def test_two_points_on_a_side_say_no_thickness(count, said):
     assert np.isfinite(found.arc[4]).any() == said
 
 
+def of_arcs(arc, made, std):
+    """As measured at a radius of 40 mm in sections 0.2 mm apart, each known to `std` mm."""
+    teeth, n = arc.shape
+    flank, count = np.zeros((teeth, 2, n)), np.full((teeth, 2, n), 20.0)
+    return SectionThickness(40.0, 0.2 * np.arange(n), 6.5, arc, flank, count, np.full(arc.shape, std), std, made)
+
+
 def test_the_greatest_loss_of_unworn_teeth_is_none_though_some_tooth_always_seems_thin():
     """Of 21 teeth, each of 30 sections, the one with the greatest loss is two standard deviations of a section's mean thin by chance."""
     rng, std, made = np.random.default_rng(8), 0.004, np.full((21, 30), 6.5) + 0.01 * np.arange(21)[:, None]
     most, worst = [], []
     for _ in range(40):
         arc = made + std * rng.normal(size=made.shape)
-        found = SectionThickness(
-            40.0,
-            np.linspace(0.0, 6.0, 30),
-            6.5,
-            arc,
-            np.zeros((21, 2, 30)),
-            np.full((21, 2, 30), 20.0),
-            np.full(made.shape, std),
-            std,
-            made,
-        )
+        found = of_arcs(arc, made, std)
         most.append(found.most_lost())
         worst.append(max(tooth.greatest_loss for tooth in found.teeth()))
     assert np.mean(worst) > 2.0 * std / np.sqrt(5.0)
@@ -267,16 +264,6 @@ def test_the_greatest_loss_is_that_of_the_worn_tooth():
     made = np.full((21, 30), 6.5)
     arc = made + 0.002 * np.random.default_rng(9).normal(size=made.shape)
     arc[7, 10:20] -= 0.05
-    found = SectionThickness(
-        40.0,
-        np.linspace(0.0, 6.0, 30),
-        6.5,
-        arc,
-        np.zeros((21, 2, 30)),
-        np.full((21, 2, 30), 20.0),
-        np.full(made.shape, 0.002),
-        0.002,
-        made,
-    )
+    found = of_arcs(arc, made, 0.002)
     most = found.most_lost()
     assert most.tooth == 7 and most.value == pytest.approx(0.05, abs=0.004) and 2.0 < most.at_z < 4.0

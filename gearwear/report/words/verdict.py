@@ -300,8 +300,7 @@ def grave_doubts(results: Results) -> list[str]:
 
 
 def _wrong_design(results: Results) -> str | None:
-    scale = 0.0 if results.loop is None else results.loop.scale
-    return wrong_design(results.gear, results.seen, results.rms_left, scale)
+    return wrong_design(results.gear, results.seen, results.rms_left, results.measured.scale)
 
 
 def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0, scale: float = 0.0) -> str | None:
