@@ -123,6 +123,7 @@ def test_of_a_spur_gear_they_take_away_what_closed_forms_say(teeth, ends):
     assert taken == pytest.approx(float(np.dot(weights * rate, lost)), rel=3e-6)
 
 
+@pytest.mark.long
 def test_double_helical_gears_have_them_at_both_ends_and_sharp_grooves(tmp_path):
     spec = GearSpec("gear", 13, 2.0, 26.0, helix_angle=0.5, profile_shift=0.2, bore_diameter=8.0, gap=4.0, end_chamfer=0.3)
     gear = Gear.from_spec(spec)

@@ -27,7 +27,9 @@ SPREAD = {
 }
 
 
-@pytest.fixture(scope="module", params=SPREAD, ids=list(SPREAD))
+@pytest.fixture(
+    scope="module", params=[pytest.param(name, id=name, marks=[pytest.mark.long] * (name != "helical")) for name in SPREAD]
+)
 def made(request, tmp_path_factory) -> tuple[Gear, Solid]:
     gear = gear_with(ALL, OTHER, SPREAD[request.param])
     path = tmp_path_factory.mktemp("step") / "gear.step"

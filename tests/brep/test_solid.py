@@ -34,9 +34,14 @@ SPREAD = {
     "large shift": (40, 5.0, 22.5, 0.8, 0.20, 1.4),
     "two hundred teeth": (200, 2.0, 14.5, 0.0, 0.30, 1.25),
 }
+LONG = ("paper gear", "six teeth, large", "14.5 degrees", "large shift", "two hundred teeth")
+"""Of many faces, or of another size: what the others show again."""
 
 
-@pytest.fixture(scope="module", params=SPREAD, ids=list(SPREAD))
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, id=name, marks=[pytest.mark.long] * (name in LONG)) for name in SPREAD],
+)
 def made(request, tmp_path_factory) -> tuple[Gear, Solid, Solid]:
     """A gear, its solid, and that solid from its STEP file."""
     teeth, module, degrees, shift, tip, dedendum = SPREAD[request.param]

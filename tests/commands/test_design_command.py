@@ -152,6 +152,7 @@ def test_tips_that_lie_elsewhere_than_first_seen_are_doubted(internal):
     assert _tips(proposed, 2.0 * proposed.tip_radius, [SurfaceLeft("tip", -0.03, 0.006, 99)]) == []
 
 
+@pytest.mark.long
 def test_an_inch_gears_face_width_is_a_fraction_of_an_inch(capsys, tmp_path):
     """Where the scan bears it out: tests/identify/test_survey.py has the widths between."""
     gear = GearNumbers(25, 3.175, pressure_angle_deg=20.0, profile_shift=0.25, face_width=19.05, bore_diameter=25.4)

@@ -91,6 +91,7 @@ def test_a_load_that_is_asked_for_and_not_modelled_is_refused_with_what_to_do(tm
         assert word in said.err
 
 
+@pytest.mark.long
 def test_a_helical_pair_carries_the_torque_by_its_transverse_force(tmp_path):
     """F = T / r_b with the transverse base radius, z m_n cos α_t / (2 cos β); N/mm over the face width."""
     (tmp_path / "helical.toml").write_text(HELICAL)

@@ -72,6 +72,7 @@ def test_the_kept_models_are_the_exact_gears(part):
     assert shape.volume == pytest.approx(gear.section_area() * gear.face_width, rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_kept_helical_pair_is_what_the_program_makes(tmp_path):
     design = read_design(MODELS / "helical_pair.toml")
     assert main([str(MODELS / "helical_pair.toml"), "--out", str(tmp_path)]) == 0

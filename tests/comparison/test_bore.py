@@ -64,6 +64,7 @@ def test_a_bore_that_is_not_there_is_no_axis(scan):
         bore_axis(register(design(), scan))
 
 
+@pytest.mark.long
 def test_of_a_ring_it_is_the_outside():
     """The outside of a ring lies off its teeth by e: about its axis the balls run out by as much the other way, about the teeth's not."""
     ring, e = Ring(), np.array([0.05, -0.02])

@@ -63,6 +63,7 @@ def test_the_pose_is_known_in_all_six_ways_without_end_faces():
     assert abs(turn) < 3.0 * std[5]
 
 
+@pytest.mark.long
 def test_hands_in_the_other_order_are_the_same_gear_and_one_helix_is_refused_by_name():
     mirrored = Double(lower=GEAR.upper)
     cloud = double_scan(mirrored, 20_000, seed=3)

@@ -116,6 +116,7 @@ def test_the_report_says_hand_angle_and_both_thicknesses():
     assert 0.85 * most < worst["loss_max_mm"] < most + 4.0 * worst["loss_max_std_mm"]
 
 
+@pytest.mark.long
 def test_the_solids_are_closed_twisted_and_hold_the_volume():
     found = result()
     worn, (lost,) = found.wear.solids.worn, found.wear.solids.bodies

@@ -39,7 +39,7 @@ def found(height: float, seen: bool = True):
     return gw.find_effects(gw.register(Design({"gear": designed(GEAR)}), gw.as_scan(broken(height, seen))))
 
 
-@pytest.mark.parametrize("height", [0.7, 1.8])
+@pytest.mark.parametrize("height", [pytest.param(0.7, marks=pytest.mark.long), 1.8])
 def test_a_fracture_is_no_root_and_a_stump_no_flank(height):
     measured = found(height)
     (piece,) = measured.broken

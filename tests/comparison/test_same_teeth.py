@@ -61,6 +61,7 @@ def test_without_anything_of_its_own_the_doubt_is_said(worn):
     assert "nothing on the gear tells" in same.sentence("the gear before wear")
 
 
+@pytest.mark.long
 def test_a_mark_on_one_flank_is_enough():
     nick = (Patch(7, -1, 300.0, (39.0, 43.0), (3.0, 8.0)),)
     first = scanned(replace(PLAIN, wear=(*WORN, *nick)), 6)
@@ -88,6 +89,7 @@ def test_laying_is_what_turning_the_gear_does():
     np.testing.assert_array_equal(TeethPattern("any", values).laid(1, False)[1], values[0])
 
 
+@pytest.mark.long
 def test_how_sure_it_says_is_how_often_it_is_right():
     """Patterns that share some of their scatter: of those said to be p sure, p are right, and of those without nearly none is sure."""
     rng = np.random.default_rng(0)

@@ -151,6 +151,7 @@ def test_thickness_is_the_angle_between_the_flanks():
     assert got["made"][0] - GEAR.thickness == pytest.approx(made / math.cos(GEAR.alpha), rel=2e-3)
 
 
+@pytest.mark.long
 def test_broken_volume_by_counting():
     rng = np.random.default_rng(5)
     for kind in ("missing tooth", "broken corner", "chipped edge"):

@@ -49,6 +49,7 @@ def test_noise_and_texture_have_the_size_that_is_told():
     assert 0.006 < made.spread < 0.012
 
 
+@pytest.mark.long
 def test_texture_has_its_rms_and_is_rougher_at_short_lengths():
     texture = Texture((0.003,), (1.0,), 400)
     line = np.column_stack([np.linspace(0.0, 400.0, 80_000), np.zeros(80_000), np.zeros(80_000)])

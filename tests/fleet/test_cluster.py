@@ -67,10 +67,11 @@ def threads(number):
             yield client
 
 
-def test_reports_are_the_same_for_any_number_of_workers(tmp_path):
-    """0, 1, 2 and 4: workers as threads, which cost no start; processes below, and in benchmarks/fleet."""
+@pytest.mark.parametrize("numbers", [(0, 2), pytest.param((0, 1, 2, 4), marks=pytest.mark.long)], ids=["two", "any"])
+def test_reports_are_the_same_for_any_number_of_workers(tmp_path, numbers):
+    """Workers as threads, which cost no start; processes below, and in benchmarks/fleet."""
     manifest, found = sections(tmp_path, 2), []
-    for number in (0, 1, 2, 4):
+    for number in numbers:
 
         @contextmanager
         def crew(jobs, number=number):

@@ -32,7 +32,7 @@ def wheel():
     return scanned(WHEEL)
 
 
-@pytest.mark.parametrize("stated", [0.25, 0.30, 0.38])
+@pytest.mark.parametrize("stated", [0.25, pytest.param(0.30, marks=pytest.mark.long), 0.38])
 def test_the_racks_tip_radius_is_found_whatever_the_design_says(wheel, stated):
     root = found(wheel, replace(WHEEL, rack_tip_radius=stated))
     assert root.seen and not root.free

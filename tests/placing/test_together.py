@@ -60,7 +60,7 @@ def same_metal(one: PlacedScan, other: PlacedScan) -> float:
     return (means[0] - means[1]) / (1.25e-3 * NOISE * math.sqrt(2.0 / 8_000))
 
 
-@pytest.mark.parametrize(("number", "ppm"), [(0, 800.0), (1, -2500.0)])
+@pytest.mark.parametrize(("number", "ppm"), [pytest.param(0, 800.0, marks=pytest.mark.long), (1, -2500.0)])
 def test_a_scale_is_taken_out_of_the_view_that_has_it(number, ppm):
     placed = with_fault(number, good().views[number] * (1.0 + 1e-6 * ppm))
     taken = [view.taken for view in placed.views]

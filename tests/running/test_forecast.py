@@ -92,6 +92,7 @@ def test_a_limit_is_reached_on_the_straight_way_between_two_cycles_and_beyond_th
     assert reached(cycles, np.full(301, 0.01), 0.02) == np.inf
 
 
+@pytest.mark.long
 def test_cycles_left_are_those_at_which_the_forecast_is_at_the_limit(study: WearStudy):
     """The limit is what the run says of twice the cycles: it is reached after as many again, and sooner at the upper side of the band."""
     ran = second(found("elastic_sharing"))

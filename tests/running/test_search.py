@@ -76,7 +76,11 @@ def test_tips_of_the_mate_that_come_in_early_are_told_with_how_much():
     assert abs(size.value - early) < 3.0 * size.std < early  # type: ignore[operator]
 
 
-@pytest.mark.parametrize("other", [{"early_um": -20.0}, {"mate_rate": 1.0}, {"softness": 1.2}], ids=["late", "mate", "soft"])
+@pytest.mark.parametrize(
+    "other",
+    [pytest.param({"early_um": -20.0}, marks=pytest.mark.long), {"mate_rate": 1.0}, {"softness": 1.2}],
+    ids=["late", "mate", "soft"],
+)
 def test_what_else_changes_the_load_at_the_ends_is_no_premature_contact(other: dict[str, float]):
     """Tips that come in late, as relieved ones do; a mate that wears; teeth that bend more, or a greater load."""
     assert traced(replace(SHARED, bridged=True, **other), seed=6).effect("premature_tip_contact") is None  # type: ignore[arg-type]

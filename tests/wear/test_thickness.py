@@ -246,6 +246,7 @@ def of_arcs(arc, made, std):
     return SectionThickness(40.0, 0.2 * np.arange(n), 6.5, arc, flank, count, np.full(arc.shape, std), std, made)
 
 
+@pytest.mark.long
 def test_the_greatest_loss_of_unworn_teeth_is_none_though_some_tooth_always_seems_thin():
     """Of 21 teeth, each of 30 sections, the one with the greatest loss is two standard deviations of a section's mean thin by chance."""
     rng, std, made = np.random.default_rng(8), 0.004, np.full((21, 30), 6.5) + 0.01 * np.arange(21)[:, None]

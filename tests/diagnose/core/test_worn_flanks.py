@@ -134,7 +134,7 @@ def test_metal_does_not_come_back():
     assert low_flanks(levels(left, right)) == ()
 
 
-@pytest.mark.parametrize("step", [3, 2])
+@pytest.mark.parametrize("step", [3, pytest.param(2, marks=pytest.mark.long)])
 def test_worn_flanks_at_even_steps_are_neither_waves_nor_effects(step):
     """In a scan whose wear is put in by code that shares nothing with the fit; without them the others tell of nothing else."""
     worn = tuple(range(1, 12, step))
