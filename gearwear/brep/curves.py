@@ -14,9 +14,8 @@ import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
 from gearwear.arrays import Floats
-from gearwear.brep.paths import Path, fillet_path, flank_paths
+from gearwear.brep.paths import Path
 from gearwear.design.gear import Gear
-from gearwear.design.side import Side
 from gearwear.errors import InputError
 
 DEGREE = 9
@@ -104,16 +103,6 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float) -> Spline:
         if count >= MOST_POINTS:
             raise InputError(f"a tooth curve cannot be drawn to {tolerance:.1e} mm; the best reached is {error:.1e} mm")
         count += 2 if count < 30 else 10
-
-
-def flank_curves(gear: Gear, side: Side = Side.LEFT) -> tuple[Spline, ...]:
-    """`flank_paths`, each drawn to 1e-10 mm."""
-    return tuple(drawn(gear, path, FLANK_TOLERANCE) for path in flank_paths(gear, side))
-
-
-def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
-    """`fillet_path`, as rack, cutter or drawing leave it, drawn to 1e-10 mm."""
-    return drawn(gear, fillet_path(gear, side), FILLET_TOLERANCE)
 
 
 def drawn(gear: Gear, path: Path, tolerance: float) -> Spline:

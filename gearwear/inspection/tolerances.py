@@ -207,7 +207,7 @@ def tolerances(
     return Tolerances(**{name: 1e-3 * (round_micrometres(um) if rounded else um) for name, um in values.items()})
 
 
-def find_class(value: float, tolerance_at: Callable[[int], float], edition: Edition = Edition.ISO_2013) -> int | None:
+def least_class(value: float, tolerance_at: Callable[[int], float], classes: range) -> int | None:
     """The least class whose tolerance is not exceeded, or None where every class is.
 
     Parameters
@@ -216,20 +216,15 @@ def find_class(value: float, tolerance_at: Callable[[int], float], edition: Edit
         Deviation in mm; its sign does not count.
     tolerance_at : callable
         Tolerance in mm of a class.
-    edition : Edition
-        Whose classes.
+    classes : range
+        Those that there are.
 
     Examples
     --------
     >>> size = Size(76.2, 6.35, 15.0, 12)
-    >>> find_class(-0.0185, lambda c: tolerances(size, c).profile_slope)
+    >>> least_class(-0.0185, lambda c: tolerances(size, c).profile_slope, CLASSES[Edition.ISO_2013])
     8
     """
-    return least_class(value, tolerance_at, CLASSES[edition])
-
-
-def least_class(value: float, tolerance_at: Callable[[int], float], classes: range) -> int | None:
-    """The same of any classes."""
     return next((c for c in classes if abs(value) <= tolerance_at(c) + 1e-12), None)
 
 

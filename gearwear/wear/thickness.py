@@ -15,13 +15,12 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import NORMAL_95
-from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
 from gearwear.placing.edges import at_either_end, least_drop, typical_fall
 from gearwear.wear.bend import LEAST_SPREAD, without_ridge
 from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
-from gearwear.wear.section_sums import SectionBand, SectionSums
+from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.tooth_summary import MostLost, ThinnestTooth, ToothSummary
 
 LEAST_POINTS = 3
@@ -296,32 +295,19 @@ class SectionThickness(Card):
         return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]))
 
 
-def section_thickness(
-    points: SurfacePoints, gear: Gear, noise: float, radius: float | None = None, z: Floats | None = None
-) -> SectionThickness:
+def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     """Measure the tooth thickness at a radius in every section.
 
     Parameters
     ----------
-    points : SurfacePoints
-        The located scan (corrected for measurement effects where they are known).
-    gear : Gear
-        The nominal gear.
+    sums : SectionSums
+        Over the points of the located scan (corrected for measurement effects where they are known), in any number of chunks.
     noise : float
         Scatter of points, mm.
-    radius : float or None
-        mm, on the involute; None: the reference circle.
-    z : (n_z,) float or None
-        Heights, mm, evenly spaced; None: 0.2 mm apart. A single height takes all points (a planar section).
 
     Returns
     -------
     SectionThickness
-
-    Raises
-    ------
-    ValueError
-        If the radius is not on the involute.
 
     Notes
     -----
@@ -331,11 +317,6 @@ def section_thickness(
     straight line through them. In a scan too thin for that the
     slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
-    return thickness_of(SectionSums.of(points, SectionBand.of(gear, radius, z)), noise)
-
-
-def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
-    """The same from sums over points, in any number of chunks; `noise` is the scatter of points, mm."""
     band = sums.band
     gear, r, heights = band.gear, band.radius, band.heights
     shape = (gear.teeth, 2, len(heights))

@@ -111,42 +111,6 @@ def _over_lines(path: PathOfContact, roll: Floats) -> Floats:
     return np.where(touched, share, 0.0)
 
 
-def wear_per_cycle(
-    gear: Gear,
-    mate: Gear,
-    centre_distance: float,
-    roll: Floats,
-    wear_coefficient: float,
-    unit_load: float,
-    sharing: LoadSharing = LoadSharing.NONE,
-) -> Floats:
-    """Depth lost per mesh cycle of `gear`: k w |K|, mm.
-
-    Parameters
-    ----------
-    gear, mate, centre_distance, roll, sharing
-        As for `load_share`.
-    wear_coefficient : float
-        k in mm²/N (1 m²/N is 1e6 mm²/N).
-    unit_load : float
-        Tooth force on all pairs per face width, N/mm.
-
-    Returns
-    -------
-    (n,) float
-
-    Examples
-    --------
-    >>> from gearwear.design import GearSpec
-    >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
-    >>> gear = Gear.from_spec(GearSpec("gear", 24, 6.35, 15.0))
-    >>> [round(float(d), 10) for d in wear_per_cycle(pinion, gear, 114.3, np.array([5.0, 10.0, 16.0]), 1e-10, 100.0)]
-    [2.41e-08, 4.5e-09, 2.8e-09]
-    """
-    share = load_share(gear, mate, centre_distance, roll, sharing)
-    return wear_coefficient * unit_load * share * specific_sliding(gear, mate, centre_distance, roll)
-
-
 def specific_sliding(gear: Gear, mate: Gear, centre_distance: float, roll: Floats) -> Floats:
     """|K| on the flank of `gear` at lengths of roll in mm: the distance slid over what the contact rolls on over its flank."""
     return np.abs(sliding(gear, mate, centre_distance, roll).specific_pinion)

@@ -7,13 +7,24 @@ import math
 import numpy as np
 import pytest
 
-from gearwear.brep.curves import DEGREE, fillet_curve, flank_curves, interpolate
-from gearwear.brep.paths import has_bottom_land
+from gearwear.brep.curves import DEGREE, FILLET_TOLERANCE, FLANK_TOLERANCE, Spline, drawn, interpolate
+from gearwear.brep.paths import fillet_path, flank_paths, has_bottom_land
 from gearwear.design import Gear, GearSpec
 from gearwear.design.involute import roll_length
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 
 SHARE = np.linspace(0.0, 1.0, 1001)
+
+
+def flank_curves(gear: Gear) -> tuple[Spline, ...]:
+    """The left flank, drawn to 1e-10 mm."""
+    return tuple(drawn(gear, path, FLANK_TOLERANCE) for path in flank_paths(gear, Side.LEFT))
+
+
+def fillet_curve(gear: Gear) -> Spline:
+    """The left root, drawn to 1e-10 mm."""
+    return drawn(gear, fillet_path(gear, Side.LEFT), FILLET_TOLERANCE)
 
 
 def rack_gear(teeth: int, degrees: float, tip: float, shift: float = 0.0) -> Gear:

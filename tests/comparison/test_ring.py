@@ -18,11 +18,11 @@ from gearwear.errors import InputError
 from gearwear.placing.cells import CellGrid
 from gearwear.wear.profiles import ProfileNodes, worn_profiles
 from gearwear.wear.solid import gear_triangles, nominal_like, worn_bodies
-from gearwear.wear.thickness import section_thickness
 from tests.synthetic.helical import Helical, scan
 from tests.synthetic.ring import Ring, ring_scan
 from tests.synthetic.test_ring import designed
 from tests.synthetic.tooth import Patch
+from tests.wear.sections import section_thickness
 
 SPUR, HELICAL = Ring(), Ring(helix=-20.0)
 WEAR = Patch(4, 1, 0.25, (17.6, 22.4), (1.0, 13.0))

@@ -10,7 +10,7 @@ from gearwear.inspection.tolerances import (
     SYMBOLS,
     Edition,
     Size,
-    find_class,
+    least_class,
     round_micrometres,
     tolerances,
 )
@@ -101,10 +101,11 @@ def test_class_is_the_least_not_exceeded():
     def limit(iso_class: int) -> float:
         return tolerances(PINION, iso_class).profile_slope
 
-    for iso_class in CLASSES[Edition.ISO_2013]:
-        assert find_class(limit(iso_class), limit) == iso_class
-        assert find_class(-limit(iso_class), limit) == iso_class
-        above = find_class(limit(iso_class) + 1e-6, limit)
+    classes = CLASSES[Edition.ISO_2013]
+    for iso_class in classes:
+        assert least_class(limit(iso_class), limit, classes) == iso_class
+        assert least_class(-limit(iso_class), limit, classes) == iso_class
+        above = least_class(limit(iso_class) + 1e-6, limit, classes)
         assert above == (iso_class + 1 if iso_class < 11 else None)
 
 

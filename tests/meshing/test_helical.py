@@ -10,13 +10,14 @@ from gearwear.design import Gear, GearSpec
 from gearwear.design.profiles import nominal_profiles
 from gearwear.design.side import Side
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import backlash, centre_distance_for_backlash, profile_shift_sum, zero_backlash_centre_distance
+from gearwear.meshing.backlash import backlash, centre_distance_for_backlash, zero_backlash_centre_distance
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.linear import linear_contact
 from gearwear.meshing.path import path_of_contact
 from gearwear.meshing.recommended import recommended_backlash
 from gearwear.meshing.shafts import shaft_movement, take_up, take_up_words
+from tests.meshing.shift_sum import profile_shift_sum
 
 BETA = math.radians(25.0)
 BETA_B = math.asin(math.sin(BETA) * math.cos(math.radians(20.0)))

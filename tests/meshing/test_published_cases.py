@@ -11,11 +11,11 @@ from gearwear.design import Gear, GearSpec
 from gearwear.inspection.dimensions import chordal, over_pins, span
 from gearwear.meshing.backlash import (
     operating_pitch_radii,
-    profile_shift_sum,
     working_pressure_angle,
     zero_backlash_centre_distance,
 )
 from gearwear.meshing.path import path_of_contact
+from tests.meshing.shift_sum import profile_shift_sum
 
 TWENTY = math.radians(20.0)
 

@@ -18,7 +18,6 @@ from gearwear.meshing.backlash import (
     backlash,
     centre_distance_for_backlash,
     operating_pitch_radii,
-    profile_shift_sum,
     transverse_backlash,
     working_pressure_angle,
     zero_backlash_centre_distance,
@@ -28,6 +27,7 @@ from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.linear import linear_contact
 from gearwear.meshing.path import path_of_contact, sliding
 from gearwear.meshing.study import study_meshing
+from tests.meshing.shift_sum import profile_shift_sum
 
 
 def pair(degrees: float = 0.0, teeth: tuple[int, int] = (20, 72), **more: float) -> tuple[Gear, Gear]:

@@ -12,9 +12,9 @@ from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.placing.registration import stray_limit
 from gearwear.placing.views import PlacedScan, place
 from gearwear.wear.regions import find_wear
-from gearwear.wear.thickness import section_thickness
 from tests.placing.placing import designed, motion_off, true_pose
 from tests.synthetic import AbrasiveWear, Patch, Recipe, Rigid, SyntheticScan, make_scan, rotation_about
+from tests.wear.sections import section_thickness
 
 GEAR = designed()
 NOISE = 5.0

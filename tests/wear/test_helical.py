@@ -12,7 +12,7 @@ from gearwear.design.surface import flank_points
 from gearwear.placing.cells import CellGrid
 from gearwear.wear.profiles import MAX_TURN, ProfileNodes, node_heights, worn_profiles
 from gearwear.wear.solid import gear_triangles
-from gearwear.wear.thickness import section_thickness
+from tests.wear.sections import section_thickness
 
 GEAR = Gear.from_spec(GearSpec("gear", 19, 3.0, 30.0, profile_shift=0.1, helix_angle=math.radians(-28.0)))
 

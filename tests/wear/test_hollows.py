@@ -13,8 +13,9 @@ from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.wear.hollows import ACROSS, _Arcs, _within, find_hollows
 from gearwear.wear.regions import find_wear
 from gearwear.wear.section_sums import SectionBand, SectionSums
-from gearwear.wear.thickness import SectionThickness, section_thickness
+from gearwear.wear.thickness import SectionThickness
 from tests.placing.placing import designed
+from tests.wear.sections import section_thickness
 
 GEAR = designed()
 NOISE = 0.006

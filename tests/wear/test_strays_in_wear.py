@@ -10,10 +10,10 @@ from gearwear.placing.registration import stray_limit
 from gearwear.wear.breakage import find_fractures
 from gearwear.wear.inside_tooth import depth_inside
 from gearwear.wear.regions import find_wear
-from gearwear.wear.thickness import section_thickness
 from gearwear.wear.volume import _deepest_pit
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
+from tests.wear.sections import section_thickness
 
 GEAR = designed()
 LEFT = frozenset({Side.LEFT})

@@ -12,9 +12,10 @@ from gearwear.design.gear import Gear
 from gearwear.design.modification import FlankModification
 from gearwear.design.surface import SurfacePoints, flank_points, locate
 from gearwear.wear.section_sums import stations
-from gearwear.wear.thickness import SectionThickness, section_thickness
+from gearwear.wear.thickness import SectionThickness
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SyntheticScan, make_scan
+from tests.wear.sections import section_thickness
 
 GEAR = designed()
 R, RB = GEAR.reference_radius, GEAR.base_radius

@@ -7,9 +7,9 @@ import numpy as np
 from gearwear.design import parse_design
 from gearwear.design.surface import FLANK, locate
 from gearwear.design.twist import from_end
-from gearwear.wear.thickness import section_thickness
 from tests.synthetic.double_helical import Double, WornHalf, double_scan
 from tests.synthetic.helical import Helical, Patch
+from tests.wear.sections import section_thickness
 
 NOISE = 0.006
 DRAWN = Double(Helical(teeth=17, helix=24.0, width=11.0), gap=1.0)

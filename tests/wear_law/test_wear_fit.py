@@ -11,12 +11,13 @@ from gearwear.errors import InputError
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.path import path_of_contact, sliding
-from gearwear.wear_law.archard import LoadSharing, wear_per_cycle
+from gearwear.wear_law.archard import LoadSharing
 from gearwear.wear_law.fit import _covariances, alike_fits, fit_wear_law
 from gearwear.wear_law.forecast import cycles_left, forecast_wear
 from gearwear.wear_law.non_negative import _greater
 from gearwear.wear_law.running import forecast_by_running
 from tests.meshing.worn import design, roll_of, wear
+from tests.wear_law.per_cycle import wear_per_cycle
 
 C = 114.3
 LINE = 39.09290238

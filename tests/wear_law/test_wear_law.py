@@ -10,10 +10,11 @@ from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.path import path_of_contact
-from gearwear.wear_law.archard import LoadSharing, load_share, wear_per_cycle
+from gearwear.wear_law.archard import LoadSharing, load_share
 from gearwear.wear_law.fit import fit_wear_law
 from gearwear.wear_law.forecast import cycles_left, forecast_wear
 from tests.meshing.worn import design, roll_of, wear
+from tests.wear_law.per_cycle import wear_per_cycle
 
 C = 114.3
 ROLL = np.linspace(3.06, 26.34, 90)
