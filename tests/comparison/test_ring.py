@@ -40,7 +40,7 @@ def compared(ring: Ring, coat: float):
     return measured, gw.find_wear(measured), patch
 
 
-@pytest.mark.parametrize(("ring", "coat"), [(SPUR, 0.0), pytest.param(HELICAL, 0.014, marks=pytest.mark.long)])
+@pytest.mark.parametrize(("ring", "coat"), [(SPUR, 0.0), (HELICAL, 0.014)])
 def test_volume_and_effect_come_out(ring, coat):
     measured, wear, patch = compared(ring, coat)
     assert [effect.name for effect in measured.loop.effects] == ["coating"] * (coat > 0.0)

@@ -27,7 +27,7 @@ def one(effect):
     "effect",
     [
         Effect("taper", {"taper_um": 30.0}),
-        pytest.param(Effect("helix_slope", {"slope_um": 30.0}), marks=pytest.mark.long),
+        Effect("helix_slope", {"slope_um": 30.0}),
         pytest.param(Effect("taper", {"taper_um": -60.0}), marks=pytest.mark.long),
         pytest.param(Effect("helix_slope", {"slope_um": -60.0}), marks=pytest.mark.long),
     ],

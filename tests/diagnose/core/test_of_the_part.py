@@ -87,7 +87,7 @@ def test_a_coat_on_roots_and_tips_is_told_whatever_the_flanks_are_like():
 
 @pytest.mark.parametrize(
     ("flank_class", "varies", "sides"),
-    [(8, 0.0, NO_SIDE), pytest.param(3, 0.0, LEFT, marks=pytest.mark.long), pytest.param(8, 0.4, LEFT, marks=pytest.mark.long)],
+    [(8, 0.0, NO_SIDE), pytest.param(3, 0.0, LEFT, marks=pytest.mark.long), (8, 0.4, LEFT)],
     ids=["cut", "rougher than its class", "worn"],
 )
 def test_a_hollow_form_of_one_side_within_the_class_that_teeth_have_alike_is_as_likely_cut(unworn, flank_class, varies, sides):
