@@ -107,6 +107,15 @@ def test_the_verdict_says_how_much_where_and_how_thin():
     assert text.count(". ") == 0, "one sentence"
 
 
+def test_a_loss_within_its_own_doubt_is_not_gone():
+    """How high a side stood as it was made may leave open all of what it seems to have lost."""
+    known = fake_results()
+    doubted = changed(known, "wear.found.volume_std", 0.6 * known.wear.volume)
+    assert "of metal is gone from" in verdict(known)
+    text = spoken(verdict(doubted))
+    assert "is gone from" not in text and "3 left flanks look worn" in text and "which may be none" in text
+
+
 def test_a_thinning_below_its_own_doubt_is_no_finding():
     results = changed(fake_results(), "wear.thickness", fake_thickness(dict.fromkeys(range(1, 13), 0.0003)))
     thinnest, nominal = results.wear.thinnest, results.gear.tooth_thickness

@@ -12,6 +12,7 @@ from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import (
+    NORMAL_95,
     SPACE,
     as_drawn,
     listed,
@@ -99,6 +100,11 @@ def _wear_found(results: Results) -> str:
     assert worst is not None
     place, depth = which_flanks([worst]), _depth(worst.max_depth)
     text = f"{_lost(results)} is gone from {which_flanks(wear.regions, results.gear.teeth)}"
+    if wear.volume < NORMAL_95 * wear.volume_std:
+        look = "looks" if len(wear.regions) == 1 else "look"
+        text = (
+            f"{which_flanks(wear.regions, results.gear.teeth)} {look} worn; {_lost(results)} is missing there, which may be none"
+        )
     text += f", up to {depth} deep" if len(wear.regions) == 1 else f"; deepest, by {depth}, on {place}"
     tooth = wear.thinnest
     nominal = results.gear.tooth_thickness
