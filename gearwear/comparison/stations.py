@@ -425,8 +425,12 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
     def arc(of: Callable[[SurfacePoints], Floats]) -> Floats:
         return np.asarray(gear.arc_per_depth * np.sum([of(flank) for flank in flanks], axis=0).reshape(gear.teeth, -1))
 
+    other = [float(arc(partial(loop.as_other, effect)).mean()) for effect in loop.either]
     # Between the places that were measured a tooth is as thin as it was made, and no thinner for what the scanner may have done.
-    return replace(result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE))), made=arc(loop.surely_made))
+    return replace(
+        result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE))), made=arc(loop.surely_made),
+        otherwise=(sum(min(change, 0.0) for change in other), sum(max(change, 0.0) for change in other)),
+    )  # fmt: skip
 
 
 def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear) -> SectionThickness:

@@ -17,7 +17,7 @@ from gearwear.diagnose.correlations import Correlation, EffectSize, correlations
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects import named_effects
-from gearwear.diagnose.effects.base import MADE, Context, Kind
+from gearwear.diagnose.effects.base import MADE, MEASURED, Context, Kind
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.effects.scale import EFFECT, SCALE
 from gearwear.diagnose.fit import Fit, Model
@@ -205,6 +205,24 @@ class Loop(Card):
     def deviation(self, points: SurfacePoints, kinds: frozenset[Kind]) -> Floats:
         """What the effects of some kinds do to the deviation of points, mm, (n,)."""
         return self._sum((effect for effect in (*self.effects, *self.form) if effect.kind in kinds), points)
+
+    @property
+    def either(self) -> tuple[FoundEffect, ...]:
+        """Effects of the maker that the scan cannot tell from one of the scanner or the mounting, and these from one of the maker."""
+        known = named_effects()
+
+        def others(effect: FoundEffect) -> set[Kind]:
+            return {known[name].kind for name in effect.alternatives if name in known}
+
+        return tuple(
+            effect
+            for effect in self.effects
+            if (effect.kind in MADE and others(effect) & MEASURED) or (effect.kind in MEASURED and others(effect) & MADE)
+        )
+
+    def as_other(self, effect: FoundEffect, points: SurfacePoints) -> Floats:
+        """By how much the gear would stand higher at points (n,) were one of `either` of the other kind, mm."""
+        return self._sum([effect], points) * (1.0 if effect.kind in MEASURED else -1.0)
 
     def surely_made(self, points: SurfacePoints) -> Floats:
         """What the maker did to the deviation of points, mm, (n,), without what the scanner may have done as well."""

@@ -79,6 +79,9 @@ class SectionThickness(Card):
     drawn, made : (teeth, n_z) float or None
         Arc as it is drawn, and what effects of the maker add to it, mm: both are known between the places that are measured and up to the ends of the
         face. Pooled sections are about the drawn arc in their middle, and hold the mean of what was made otherwise. None: the same in all sections.
+    otherwise : (float, float)
+        How much thinner (≤ 0) and thicker (≥ 0) all teeth are, mm of arc, were effects that are taken for made or measured of the other kind, where the
+        scan does not tell: a coat for thick teeth.
     """
 
     radius: float
@@ -100,6 +103,7 @@ class SectionThickness(Card):
     hollows: Hollows | None = None
     drawn: Floats | None = None
     made: Floats | None = None
+    otherwise: tuple[float, float] = (0.0, 0.0)
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -287,7 +291,7 @@ class SectionThickness(Card):
             return None
         least, at_z, _ = self._least_arc
         value, std = least.overall, least.overall_std
-        low, high = value - NORMAL_95 * std, value + NORMAL_95 * std
+        low, high = value - NORMAL_95 * std + self.otherwise[0], value + NORMAL_95 * std + self.otherwise[1]
         if self.pooled > 1:
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
