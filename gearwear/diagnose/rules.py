@@ -114,7 +114,6 @@ class Rules:
     blocks: int = rule(6, "folds", "derived", "blocks along z or the profile, staggered from tooth to tooth")
 
     # The search.
-    most_effects: int = rule(7, "effects", "tuned, scans not recorded", "most that the search adds", off=1_000_000)
     effect_penalty: float = rule(7.0, "cost", "derived", "2 ln of some candidates: what an effect must be worth beyond chance")
     parameter_penalty: float = rule(4.0, "cost", "derived", "2 standard deviations: each of its parameters")
     shape_price: float = rule(1.5, "parameters", "tuned, scans not recorded", "what a shape value counts", off=1.0)

@@ -172,10 +172,7 @@ def forward(problem: Problem, chosen: tuple[Candidate, ...] = ()) -> tuple[Candi
     Effects with a freedom for every tooth come last: early on they soak up whatever goes round the gear.
     """
     for by_tooth in (False, True):
-        while len(chosen) < rules().most_effects:
-            best = _best_addition(problem, chosen, by_tooth)
-            if best is None:
-                break
+        while (best := _best_addition(problem, chosen, by_tooth)) is not None:
             chosen = (*chosen, best)
     return chosen
 
@@ -288,7 +285,7 @@ def _moves(problem: Problem, chosen: tuple[Candidate, ...], around: Around) -> l
         for pair in pairs[i]:
             moves += around.added(pair)
     moves += around.added(chosen)
-    return [move for move in moves if len(move[0]) <= rules().most_effects + 1 and problem.keeps(move[0])]
+    return [move for move in moves if problem.keeps(move[0])]
 
 
 def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:

@@ -133,12 +133,14 @@ def test_an_effect_is_taken_once_in_its_best_shape():
     assert [c.shape for c in promising(one, (), 5)] == [(1.0,)]
 
 
-def test_there_is_an_end_to_the_number_of_effects():
+def test_as_many_effects_are_taken_as_are_worth_their_price():
+    """A gear of class 8 with levels of the drawing needs a dozen: an end to their number made wear of what it left out."""
     rng = np.random.default_rng(13)
     q = np.linalg.qr(rng.normal(size=(ROWS, 12)))[0]
     blocks = [(Toy(f"e{i}"), q[:, [i]]) for i in range(12)]
-    one = problem(np.ones((ROWS, 1)), blocks, q @ np.linspace(50.0, 100.0, 12))
-    assert names(forward(one)) == {f"e{i}" for i in range(12 - RULES.most_effects, 12)}
+    size = np.r_[np.linspace(50.0, 100.0, 10), 0.5 * np.sqrt(RULES.effect_penalty + RULES.parameter_penalty) * np.ones(2)]
+    one = problem(np.zeros((ROWS, 0)), blocks, q @ size)
+    assert names(forward(one)) == {f"e{i}" for i in range(10)}
 
 
 def test_parameters_and_shape_values_have_a_price():
