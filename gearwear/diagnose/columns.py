@@ -107,6 +107,11 @@ class CellColumns:
         return result
 
 
+def cuts_among(cuts: Ints, rows: Ints) -> Ints:
+    """First of some cells `rows` (n,) of each stretch that has any of them."""
+    return np.unique(np.searchsorted(rows, cuts[cuts <= rows[-1]])) if len(rows) else np.zeros(0, dtype=np.int64)
+
+
 def cuts_of(grid: CellGrid) -> Ints:
     """First cells of the stretches of a grid: some whole tooth sides, or teeth, of one surface."""
     across = {

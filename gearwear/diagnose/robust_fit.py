@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.diagnose.beside import RIDGE
+from gearwear.diagnose.columns import CellColumns
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.rules import rules
 from gearwear.robust import scale_about, tukey_weight
 
 PASSES = 6
 """Reweighted fits, wide and again narrow, at most; numerical."""
+FEW = 1.0 / 3.0
+"""Part of the values of columns that are not zero, below which their sums are taken stretch by stretch; numerical."""
 SETTLED = 0.01
 """Part of `close` by which the sum of squares may still change from one reweighted fit to the next; numerical."""
 
@@ -69,21 +74,20 @@ class Shares:
     def count(self) -> int:
         return len(self.firsts)
 
-    def amplitudes(self, columns: Floats, target: Floats, weight: Floats) -> Floats:
-        """Those of the fit on columns (n, p) and on the shares; the shares are solved for each by itself (an arrow: Schur's complement)."""
+    def amplitudes(self, columns: Floats, target: Floats, weight: Floats, gram: Gram) -> Floats:
+        """Those of the fit on columns (n, p), whose sums are in `gram`, and on the shares; the shares are solved for each by itself (an arrow: Schur's complement)."""
         loss, rows = self.loss[self.rows], self.rows
         weighted = (weight[rows] * loss)[:, None]
         both = np.add.reduceat(weighted * np.column_stack([columns[rows], target[rows], loss]), self.firsts, axis=0)
         own = both[:, -1] * (1.0 + RIDGE)
         own[own == 0.0] = 1.0  # a column nobody sees gets no amplitude
         across, moment = both[:, :-2], both[:, -2]
-        root = np.sqrt(weight)[:, None]
-        part, aim = columns * root, target * root[:, 0]
-        information, size = part.T @ part, np.sqrt(np.einsum("ij,ij->j", part, part))
+        information = gram.information[0]
+        size = np.sqrt(np.diag(information))
         size[size == 0.0] = 1.0
         spanned = across / own[:, None]
         left = (information - across.T @ spanned) / np.outer(size, size) + RIDGE * np.eye(len(size))
-        shared = np.linalg.solve(left, (part.T @ aim - spanned.T @ moment) / size) / size
+        shared = np.linalg.solve(left, (gram.moment[0] - spanned.T @ moment) / size) / size
         return np.concatenate([shared, (moment - across @ shared) / own])
 
     def times(self, amplitudes: Floats) -> Floats:
@@ -94,7 +98,8 @@ class Shares:
 
 
 def robust_fit(
-    target: Floats, known: Floats, columns: Floats, shares: Shares | None = None, losses: int = 0, settled: float = SETTLED, first: Floats | None = None
+    target: Floats, known: Floats, columns: Floats, shares: Shares | None = None, losses: int = 0, settled: float = SETTLED, first: Floats | None = None,
+    cuts: Ints | None = None,
 ) -> Robust:  # fmt: skip
     """The robust fit of columns (n, p) to a target (n,), until its sum of squares changes by less than a part of `close`.
 
@@ -111,18 +116,21 @@ def robust_fit(
     settled : float
     first : (n,) float or None
         Weights that a poorer fit ended with, to begin with: a deep place of one flank would draw a share of its own at first.
+    cuts : (k,) int or None
+        First cells of stretches of which each has few of the columns.
     """
     root = np.sqrt(known)
+    sums = _sums(columns, target, cuts)
     free, bounded = np.split(np.arange(columns.shape[1]), [columns.shape[1] - losses])
     weight = known if first is None else first
     for wide in (True, False) if first is None else (False,):  # what lies far off at first may be the whole of a side
         before = np.inf
         for _ in range(PASSES):
+            gram = sums(weight)
             if shares is not None:
-                amplitudes = shares.amplitudes(columns, target, weight)
+                amplitudes = shares.amplitudes(columns, target, weight, gram)
                 fitted = columns @ amplitudes[: columns.shape[1]] + shares.times(amplitudes[columns.shape[1] :])
             else:
-                gram = Gram.whole(columns, target, weight)
                 amplitudes = gram.solve_non_negative(free, bounded) if losses else gram.amplitudes(free)
                 fitted = columns @ amplitudes
             residual = (target - fitted) * root
@@ -133,3 +141,15 @@ def robust_fit(
                 break
             before = square
     return Robust(weight, amplitudes, square)
+
+
+def _sums(columns: Floats, target: Floats, cuts: Ints | None) -> Callable[[Floats], Gram]:
+    """The sums of columns (n, p) as a function of the weights (n,)."""
+    if cuts is None or np.count_nonzero(columns) > FEW * columns.size:
+        return partial(Gram.whole, columns, target)
+    blocks, together = (CellColumns.of(columns, cuts),), np.zeros(len(target), np.int64)
+
+    def stretch_by_stretch(weight: Floats) -> Gram:
+        return Gram.of(blocks, target, weight, together, 1)
+
+    return stretch_by_stretch

@@ -11,6 +11,8 @@ from typing import cast
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.diagnose.by_tooth import ALIKE, ByTooth
+from gearwear.diagnose.columns import CellColumns, cuts_among
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis
 from gearwear.diagnose.effects.base import Context, Effect, Shape
@@ -20,8 +22,6 @@ from gearwear.diagnose.search import Problem, promising
 from gearwear.placing.cells import Cells
 from gearwear.processors import each
 
-ALIKE = 1e-5
-"""Part of a column that others leave, below which squares of the columns lose too many digits; numerical."""
 Shaped = tuple[tuple[Effect, Shape], ...]
 """Effects of some shapes."""
 BestOf = Callable[[Callable[[Shape], float], Shape, int, float, float], Shape]
@@ -42,14 +42,14 @@ class Trials:
     ----------
     problem : Problem
     columns : callable
-        Of a model with the pose, (n, p).
+        Of a model with the pose, (n, p), or blocks of them side by side.
     gain : callable
         Of a model: how far the weighted sum of squares falls when an effect of some shape is added to it and the pose.
     target, weight : (n,) float
     """
 
     problem: Problem
-    columns: Callable[[Shaped], Floats]
+    columns: Callable[[Shaped], Floats | tuple[CellColumns, ...]]
     gain: Callable[[Shaped], Gain]
     target: Floats
     weight: Floats
@@ -65,12 +65,29 @@ class Trials:
 
         basis = cast(Callable[[Effect, Shape], Floats], lru_cache(maxsize=REMEMBERED // max(len(rows), 1))(evaluated))
 
-        def columns(model: Shaped) -> Floats:
-            return np.hstack([pose, *(basis(effect, shape) for effect, shape in model)])
+        cuts = cuts_among(problem.dictionary.first.cuts, rows)
+        root = np.sqrt(weight)[:, None]
+
+        @lru_cache(maxsize=FRAMES)
+        def by_tooth(specific: Shaped) -> ByTooth | None:
+            return ByTooth.of(root * np.hstack([basis(effect, shape) for effect, shape in specific])) if specific else None
+
+        def stretches(effect: Effect, shape: Shape) -> CellColumns:
+            return CellColumns.of(basis(effect, shape), cuts)
+
+        of_each_tooth = cast(Callable[[Effect, Shape], CellColumns], lru_cache(maxsize=FRAMES)(stretches))
+
+        def columns(model: Shaped) -> Floats | tuple[CellColumns, ...]:
+            if not any(effect.tooth_specific for effect, _ in model):
+                return np.hstack([pose, *(basis(effect, shape) for effect, shape in model)])
+            own = ((of_each_tooth if effect.tooth_specific else stretches)(effect, shape) for effect, shape in model)
+            return CellColumns.of(pose, cuts), *own
 
         @lru_cache(maxsize=FRAMES)
         def gain(model: Shaped) -> Gain:
-            beside = _gain_beside(columns(model), target, weight)
+            specific = by_tooth(tuple(one for one in model if one[0].tooth_specific))
+            shared = [basis(*one) for one in model if specific is None or not one[0].tooth_specific]
+            beside = _gain_beside(np.hstack([pose, *shared]), target, weight, specific)
             return cast(Gain, cache(lambda effect, shape: beside(basis(effect, shape))))
 
         return cls(problem, columns, gain, target, weight)
@@ -105,7 +122,7 @@ class Trials:
         """As `Problem.cost`, whatever the shapes."""
         columns = self.columns(_shaped(model))
         gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
-        every = np.arange(columns.shape[1])
+        every = np.arange(gram.information.shape[1])
         if not self.problem.possible(model, gram.solve(every)[0][len(self.problem.dictionary.pose) :]):
             return math.inf
         return gram.residual_square(every) / self.problem.unit + sum(self.problem.penalty(c) for c in model)
@@ -148,17 +165,23 @@ def _with_columns(
     return dictionary, tuple(model)
 
 
-def _gain_beside(base: Floats, target: Floats, weight: Floats) -> Callable[[Floats], float]:
-    """Function: fall of the weighted sum of squares when columns are added to `base`, which is taken out of everything once."""
+def _gain_beside(base: Floats, target: Floats, weight: Floats, by_tooth: ByTooth | None = None) -> Callable[[Floats], float]:
+    """Function: fall of the weighted sum of squares when columns are added to `base` and what is `by_tooth`, which are taken out of everything once."""
     root = np.sqrt(weight)[:, None]
-    frame = orthonormal(base * root)
-    aim = target[:, None] * root
+    weighted, aim = base * root, target[:, None] * root
+    if by_tooth is not None:
+        weighted, aim = by_tooth.beside(weighted), by_tooth.beside(aim)
+    frame = orthonormal(weighted)
     aim = aim - frame @ (frame.T @ aim)
 
     def gain(columns: Floats) -> float:
         own = columns * root
         spanned, moment = frame.T @ own, (own.T @ aim)[:, 0]  # nothing that the base spans is left in `aim`
-        return float(moment @ np.linalg.lstsq(own.T @ own - spanned.T @ spanned, moment, rcond=1e-9)[0])
+        left = own.T @ own - spanned.T @ spanned
+        if by_tooth is not None:
+            along = by_tooth.along(own)
+            left -= along.T @ along
+        return float(moment @ np.linalg.lstsq(left, moment, rcond=1e-9)[0])
 
     return gain
 

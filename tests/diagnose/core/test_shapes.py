@@ -5,12 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from gearwear.diagnose.by_tooth import ByTooth
 from gearwear.diagnose.dictionary import build_dictionary, cell_basis
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, ReliefEffect
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.search import exchange, forward
-from gearwear.diagnose.shapes import orthonormal, polish, refine_shapes, shape_columns
+from gearwear.diagnose.shapes import _gain_beside, orthonormal, polish, refine_shapes, shape_columns
 from tests.diagnose.core.toy import WIDTH, fit_of, grid, sides_of
 
 NOISE, COUNT = 0.004, 20.0
@@ -171,3 +172,31 @@ def test_a_frame_spans_its_columns_and_nothing_else(alike):
     np.testing.assert_allclose(frame.T @ frame, np.eye(6), atol=1e-13)
     off = columns - frame @ (frame.T @ columns)
     assert np.abs(off).max() < 1e-12 * np.abs(columns).max()
+
+
+def test_what_is_by_tooth_is_taken_out_as_columns_are():
+    """Against the fall of a least-squares fit of all columns together; two amounts a tooth, of mean 0, and columns that lean on them."""
+    rng = np.random.default_rng(4)
+    teeth, cells = 9, 40
+    tooth, weight = np.repeat(np.arange(teeth), cells), rng.uniform(0.5, 2.0, teeth * cells)
+    amounts = []
+    for own in (np.ones(teeth * cells), rng.choice([-1.0, 1.0], teeth * cells)):
+        each = np.where(tooth[:, None] == np.arange(teeth), own[:, None], 0.0)
+        amounts.append(each[:, :-1] - each[:, [-1]])
+    by_tooth, base = np.hstack(amounts), rng.normal(size=(teeth * cells, 3)) + 0.1 * tooth[:, None]
+    tried, target = rng.normal(size=(teeth * cells, 2)) + by_tooth[:, :2], rng.normal(size=teeth * cells)
+    root = np.sqrt(weight)
+
+    def left(*columns):
+        return np.linalg.lstsq(np.hstack(columns) * root[:, None], target * root)[1][0]
+
+    taken_out = ByTooth.of(by_tooth * root[:, None])
+    gained = left(base, by_tooth) - left(base, by_tooth, tried)
+    assert _gain_beside(base, target, weight, taken_out)(tried) == pytest.approx(gained, rel=1e-9)
+    assert _gain_beside(np.hstack([base, by_tooth]), target, weight)(tried) == pytest.approx(gained, rel=1e-9)
+    assert np.abs(taken_out.columns.T @ taken_out.beside(base)).max() < 1e-12
+
+
+@pytest.mark.parametrize("columns", [np.eye(6)[:, [0, 1, 1]], np.eye(6)[:, :2] * [1.0, 0.0]], ids=["twice the same", "nothing"])
+def test_columns_that_are_nearly_the_same_are_not_by_tooth(columns):
+    assert ByTooth.of(columns) is None
