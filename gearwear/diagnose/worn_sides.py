@@ -17,13 +17,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
-from scipy.special import chdtri
+from scipy.special import chdtri, fdtri
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
 from gearwear.design.tolerance import profile_form_tolerance
-from gearwear.diagnose.columns import CellColumns, Stretch, cuts_of
+from gearwear.diagnose.columns import CellColumns, Stretch, cuts_among, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
@@ -95,12 +95,23 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
     shared, price = made_profiles(fit.cells)
     by_side = on_each_side(fit.cells, shared), np.tile(price, len(Side))
     profiles = (shared[:, :0], price[:0]), (shared, price), by_side
-    plain, alike, apart = each([partial(scan.made_cost, model, *profile) for profile in profiles])
-    made = min(plain, alike)
-    answers = frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)
-    unworn = min(made, apart)
-    worn = each([partial(scan.least_worn_cost, model, sides, apart < made, unworn) for sides in answers])
-    tenable = {sides: cost for sides, cost in zip(answers, worn, strict=True) if cost is not None}
+    plain, alike, apart = each([partial(scan.made, model, *profile) for profile in profiles])
+    made = min(plain.cost, alike.cost)
+    answers = [frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)]
+    unworn = min(made, apart.cost)
+    tried = [partial(scan.least_worn_cost, model, sides, apart.cost < made, unworn) for sides in answers]
+    if apart.cost < made:
+        # One side worn, and the other cut to a profile of its own.
+        for side in Side:
+            own = apart.needed[apart.needed // shared.shape[1] == side.opposite.index]
+            if len(own):
+                beside, paid = scan.beside(by_side[0][:, own]), _price(by_side[1][own])
+                answers.append(frozenset({side}))
+                tried.append(partial(beside.slid_cost, model, answers[-1], paid))
+    tenable = dict[frozenset[Side], float]()
+    for sides, cost in zip(answers, each(tried), strict=True):
+        if cost is not None:
+            tenable[sides] = min(cost, tenable.get(sides, math.inf))
     return SideCosts({NO_SIDE: unworn} | tenable, made)
 
 
@@ -120,6 +131,14 @@ class _Loss:
     cost: float
     loss: Floats
     uneven: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """The cost of flanks that were made so, and which of the columns of profiles that were free are needed, (k,)."""
+
+    cost: float
+    needed: Ints
 
 
 @dataclass(frozen=True)
@@ -165,6 +184,10 @@ class _Scan:
         """The cells that a fit may use."""
         return np.flatnonzero(self.sound)
 
+    @cached_property
+    def _cuts(self) -> Ints:
+        return cuts_among(self.fit.dictionary.first.cuts, self.rows)
+
     def columns(self, model: Model) -> Floats:
         """Columns of the pose and of a model, on the cells that a fit may use."""
         which = np.concatenate([self.fit.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
@@ -180,7 +203,7 @@ class _Scan:
     ) -> Robust:
         """`robust_fit` on the cells that a fit may use."""
         known = self.fit.covariance.weight[self.rows]
-        return robust_fit(self.fit.target[self.rows], known, columns, shares, losses, settled, first)
+        return robust_fit(self.fit.target[self.rows], known, columns, shares, losses, settled, first, self._cuts)
 
     def shares(self, loss: Floats) -> Shares:
         """A loss (n,) with a share of its own on every flank."""
@@ -193,8 +216,16 @@ class _Scan:
         result[self.rows] = values
         return result
 
-    def made_cost(self, model: Model, free: Floats, price: Floats) -> float:
-        """Of the best model beside what is needed of some columns (m, k) that flanks were made with, at the price (k,) of each."""
+    def beside(self, made: Floats) -> _Scan:
+        """The scan with some columns (m, k) that flanks were made with in every fit, as the pose is."""
+        wide = self.fit.dictionary.with_columns(made)
+        added = np.arange(self.fit.dictionary.count, wide.count)
+        fit = replace(self.fit, dictionary=replace(wide, pose=np.concatenate([wide.pose, added])))
+        known = self.problem
+        return _Scan(fit, fit.problem(known.unit, known.context, known.always), self.sound)
+
+    def made(self, model: Model, free: Floats, price: Floats) -> _Made:
+        """The best model beside what is needed of some columns (m, k) that flanks were made with, at the price (k,) of each."""
         seen = free[self.rows]
         fitted = self.robust(np.hstack([self.columns(model), seen]))
         if free.shape[1]:
@@ -203,8 +234,7 @@ class _Scan:
         model = self._searched(model, free[:, needed], fitted.weight)
         needed = self._needed(model, seen, price, fitted.weight)
         fitted = self.robust(np.hstack([self.columns(model), seen[:, needed]]))
-        paid = rules().effect_penalty + float(price[needed].sum()) if len(needed) else 0.0
-        return fitted.square / self.problem.unit + self._named(model) + paid
+        return _Made(fitted.square / self.problem.unit + self._named(model) + _price(price[needed]), needed)
 
     def _needed(self, model: Model, free: Floats, price: Floats, weight: Floats) -> Ints:
         """Which of some columns gain more beside a model than they cost, one after the other."""
@@ -220,6 +250,13 @@ class _Scan:
                 break
             chosen, rest = np.append(chosen, rest[best]), np.delete(rest, best)
         return chosen
+
+    def slid_cost(self, model: Model, worn: frozenset[Side], paid: float) -> float | None:
+        """Of the best model beside wear on some sides as sliding leaves it, with what is `paid` for a form; None where it has none of that."""
+        return min(
+            (lost.cost + paid for lost in self.losses(model, worn, *wear_columns(self.fit.cells, self.problem.context, worn))),
+            default=None,
+        )
 
     def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> float | None:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
@@ -327,11 +364,39 @@ class _Scan:
         more, gain = by_tooth.count - len(worn), (fitted.square - alone.square) / self.problem.unit
         by_chance = float(chdtri(more, rules().significance))
         uneven = gain > by_chance and float(share.std()) > rules().alike_teeth * float(share.mean())
+        if uneven and len(worn) == 1:
+            (side,), made = worn, self.columns(searched) @ alone.amplitudes[: -by_tooth.count]
+            uneven = self._differ_more(self.on_all(self.fit.target[self.rows] - made), self.on_all(alone.weight), loss, side)
         losses = [_Loss(common, loss, uneven)]
         if share.min() >= 0.0:
             paid = price + rules().parameter_penalty * more + self._named(searched)
             losses.append(_Loss(alone.square / self.problem.unit + paid, loss, uneven))
         return losses
+
+    def _differ_more(self, left: Floats, weight: Floats, loss: Floats, side: Side) -> bool:
+        """Whether flanks of a side differ more in the shape of a loss (m,) than those of the other side do, who wore it not: as they were cut all differ.
+
+        Parameters
+        ----------
+        left, weight : (m,) float
+            What the effects leave, and how far it is believed, 1 / mm².
+
+        Notes
+        -----
+        How much of the shape a flank has stands beside a level and a slope of its own. The variances of both sides are compared (F).
+        """
+        shape, number = self.fit.cells.grid.flank_shape, self.fit.cells.grid.gear.teeth
+        lost = shape(loss)[:, side.index].reshape(number, -1)
+        typical = lost.sum(axis=0) / np.maximum((lost != 0.0).sum(axis=0), 1)
+        way = np.broadcast_to(np.linspace(-1.0, 1.0, shape(loss).shape[-1]), shape(loss).shape[2:]).ravel()
+        design = np.column_stack([np.ones(len(way)), way, typical])
+        believed, seen = (shape(values).reshape(number, len(Side), -1) for values in (weight, left))
+        information = np.einsum("tsc,ci,cj->tsij", believed, design, design)
+        moment = np.einsum("tsc,ci->tsi", believed * seen, design)
+        size = (np.linalg.pinv(information, rcond=1e-9, hermitian=True) @ moment[..., None])[..., 2, 0]
+        spread = size.var(axis=0, ddof=1)
+        freedom = number - 1.0
+        return bool(spread[side.index] > float(fdtri(freedom, freedom, 1.0 - rules().significance)) * spread[side.opposite.index])
 
     def _known(self, model: Model) -> Model:
         """A model with what is in every one, to begin with."""
@@ -370,6 +435,11 @@ class _Scan:
         """The search beside some columns of a law, which are in every fit as the pose is."""
         with_law = replace(wide, pose=np.concatenate([wide.pose, lost]))
         return Problem(with_law, gram, self.problem.unit, self.problem.context, self.problem.always)
+
+
+def _price(columns: Floats) -> float:
+    """Of a form that flanks were made with, from those of its columns (k,); none of none."""
+    return rules().effect_penalty + float(columns.sum()) if len(columns) else 0.0
 
 
 def as_slid(lost: Floats, way: Floats, made: float) -> bool:

@@ -15,9 +15,9 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.of_the_part import left_in_the_part
 from gearwear.placing.cells import noise
-from tests.diagnose.core.test_worn_sides import LEFT, NO_SIDE, PINION, binned, explained
+from tests.diagnose.core.test_worn_sides import FROM_TOOTH_TO_TOOTH, LEFT, NO_SIDE, PINION, binned, explained
 from tests.diagnose.core.toy import Toy, problem
-from tests.synthetic import Effect
+from tests.synthetic import Effect, SlidingWear
 
 
 @pytest.fixture(scope="module")
@@ -101,3 +101,19 @@ def test_a_hollow_form_of_one_side_within_the_class_that_teeth_have_alike_is_as_
     assert (np.ptp(hollow) < profile_form_tolerance(gear.normal_module, flank_class)) == (flank_class == 8)
     loop = explained(cells)
     assert {loop.worn_sides, *loop.undecided} >= {LEFT} and loop.worn_sides == sides
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        lambda way: (2.0 * way - 1.0) ** 2,
+        pytest.param(lambda way: np.clip(1.0 - 2.0 * way, 0.0, 1.0), marks=pytest.mark.long),
+        pytest.param(lambda way: np.clip(4.0 * np.abs(way - 0.5) - 1.0, 0.0, 1.0), marks=pytest.mark.long),
+    ],
+    ids=["crowned", "relieved at the root", "relieved at both ends"],
+)
+def test_a_side_is_worn_whatever_the_other_was_cut_to(form):
+    """Left flanks slid by 60 µm, each tooth by its own share, right ones cut otherwise by 25 µm: neither made so, nor worn on both sides."""
+    worn = binned((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),))
+    loop = explained(with_form(worn, -0.025 * form(along(worn)), frozenset({Side.RIGHT})))
+    assert (loop.worn_sides, loop.others) == (LEFT, ())
