@@ -383,7 +383,7 @@ class _Scan:
 
         Notes
         -----
-        How much of the shape a flank has stands beside a level and a slope of its own. The variances of both sides are compared (F).
+        How much of the shape a flank has stands beside a level and a slope of its own. The variances of both sides, beyond that of the noise, are compared (F).
         """
         shape, number = self.fit.cells.grid.flank_shape, self.fit.cells.grid.gear.teeth
         lost = shape(loss)[:, side.index].reshape(number, -1)
@@ -393,9 +393,10 @@ class _Scan:
         believed, seen = (shape(values).reshape(number, len(Side), -1) for values in (weight, left))
         information = np.einsum("tsc,ci,cj->tsij", believed, design, design)
         moment = np.einsum("tsc,ci->tsi", believed * seen, design)
-        size = (np.linalg.pinv(information, rcond=1e-9, hermitian=True) @ moment[..., None])[..., 2, 0]
-        spread = size.var(axis=0, ddof=1)
-        freedom = number - 1.0
+        inverse = np.linalg.pinv(information, rcond=1e-9, hermitian=True)
+        size = (inverse @ moment[..., None])[..., 2, 0]
+        by_noise = self.problem.unit * inverse[..., 2, 2].mean(axis=0)
+        spread, freedom = np.maximum(size.var(axis=0, ddof=1) - by_noise, 0.0), number - 1.0
         return bool(spread[side.index] > float(fdtri(freedom, freedom, 1.0 - rules().significance)) * spread[side.opposite.index])
 
     def _known(self, model: Model) -> Model:

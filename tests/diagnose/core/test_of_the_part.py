@@ -103,6 +103,17 @@ def test_a_hollow_form_of_one_side_within_the_class_that_teeth_have_alike_is_as_
     assert {loop.worn_sides, *loop.undecided} >= {LEFT} and loop.worn_sides == sides
 
 
+def test_flanks_that_differ_on_both_sides_were_cut_so(unworn):
+    """As in the case that is worn, but right flanks have as much of the same shape, up or down by chance."""
+    first, last = unworn.grid.roll_edges[[0, -1]]
+    pitch_point, tooth = make_context(unworn, np.eye(3), False).pitch_roll, unworn.points.tooth.astype(float)
+    hollow = -0.02 * np.sin(2.0 * np.pi * (np.nan_to_num(unworn.points.roll) - pitch_point) / (last - first)) ** 2
+    gear = Gear.from_spec(replace(PINION.spec, tolerance=GearTolerance(flank_class=8)))
+    cells = with_form(replace(unworn, grid=replace(unworn.grid, gear=gear)), (1.0 + 0.4 * np.sin(tooth**2)) * hollow, LEFT)
+    loop = explained(with_form(cells, 0.4 * np.cos(tooth**2) * hollow, frozenset({Side.RIGHT})))
+    assert loop.worn_sides == NO_SIDE
+
+
 @pytest.mark.parametrize(
     "form",
     [
