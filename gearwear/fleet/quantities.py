@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from gearwear.design.side import Side
 
 Json = Mapping[str, Any]
@@ -95,7 +97,11 @@ def _wear(report: Json) -> Iterator[Quantity]:
         deepest = max(regions, key=lambda region: _number(region["max_depth_um"]))
         yield _depth(deepest, GEAR)
     elif size in wear:  # nothing was found: what might be there all the same
-        yield Quantity(name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=depth * patch if unit == "mm3" else math.nan)
+        hidden, open_ = (
+            depth * patch if unit == "mm3" else math.nan,
+            _number(wear[size].get("high")),
+        )  # what else the scan leaves open
+        yield Quantity(name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=float(np.fmax(hidden, open_)))
         yield Quantity(name="wear_depth_mm", scope=GEAR, value=0.0, low=0.0, high=depth)
     yield from _estimate("lost_volume_mm3", GEAR, wear.get("lost_volume_mm3"))
     seen = {(region["tooth"], region["flank"]) for region in regions}
@@ -153,6 +159,8 @@ def _thickness(report: Json) -> Iterator[Quantity]:
             value=_number(least.get("value_mm")),
             std=_number(least.get("std_mm")),
             tooth=int(least["tooth"]),
+            low=_number(least.get("low_mm")),
+            high=_number(least.get("high_mm")),
         )
     yield from losses
 

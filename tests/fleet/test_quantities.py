@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from gearwear.fleet.conformity import Conformity, conformity
 from gearwear.fleet.quantities import GEAR, TOOTH, quantities
 from tests.fleet.fleets import report
 
@@ -38,6 +39,16 @@ def test_where_nothing_was_found_stands_what_might_be_there():
     assert (gear["wear_depth_mm"].value, gear["wear_depth_mm"].high) == (0.0, pytest.approx(2 * 0.02))
     assert gear["wear_volume_mm3"].high == pytest.approx(2 * 0.02 * 9.0)
     assert math.isnan(gear["wear_depth_mm"].std)
+
+
+def test_what_the_scan_leaves_open_stands_where_nothing_was_found():
+    """Whole sides that may be worn or made so: far more than a patch too shallow to be seen, and no proof that a limit is kept."""
+    given = report()
+    given["wear"]["regions"] = []
+    given["wear"]["volume_mm3"] = {"value": 0.0, "std": 0.0, "low": 0.0, "high": 120.0, "range_from": "…"}
+    volume = rows(given)["wear_volume_mm3"]
+    assert (volume.value, volume.high) == (0.0, 120.0)
+    assert conformity(volume.value, volume.std, 50.0, volume.low, volume.high) is Conformity.NEITHER
 
 
 def test_a_range_of_the_report_is_kept():
