@@ -124,6 +124,11 @@ def test_what_the_effects_would_have_cost_is_one_line():
         "If left in: 83.1 mm³ lost, backlash 1.603 mm, transmission error 1 562.1 µm, deepest wear 1 531.2 µm."
     ]
     assert said(80, fake_results()) == ["If left in: 83.1 mm³ lost, backlash 1.603 mm, transmission error 1 562.1 µm."]
+    hidden = {"worn_volume_mm3": 0.0, "deepest_wear_um": 0.0}
+    none = replace(
+        fake_results(), changes=tuple(replace(one, before=hidden.get(one.name, one.before)) for one in fake_results().changes)
+    )
+    assert said(110, none) == ["If left in: no wear found, backlash 1.603 mm, transmission error 1 562.1 µm."]
     unseen = replace(fake_results(), changes=tuple(replace(one, std=1e9) for one in fake_results().changes))
     assert said(80, unseen) == said(80, bare_results()) == []
 

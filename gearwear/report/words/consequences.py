@@ -26,6 +26,8 @@ SHORT = {
     "deepest_wear_um": f"deepest wear {{}}{SPACE}µm",
 }
 """What is said on the terminal, the most telling first."""
+NOTHING = {"worn_volume_mm3": "no wear found", "worn_area_mm2": "no wear found", "deepest_wear_um": ""}
+"""What is said of 0: that none stood out of what was left in, and not that there is none."""
 DIGITS = {"mm": 3, "um": 1, "mm3": 1, "mm2": 2}
 HEAD = ("", "owing to", "as scanned", "effects taken out", "difference", "as made")
 TEXT = (
@@ -63,9 +65,14 @@ def change_line(changes: tuple[Change, ...], width: int) -> str:
     for name, words in SHORT.items():
         change = by_name.get(name)
         shown = MISSING if change is None else number(change.before, DIGITS[_unit(change)])
-        if shown == MISSING:
+        if change is None or shown == MISSING:
             continue
-        longer = f"{text[:-1]}, {words.format(shown)}." if text else f"If left in: {words.format(shown)}."
+        told = words.format(shown)
+        if change.before == 0.0 and name in NOTHING:
+            told = NOTHING[name]
+            if not told:
+                continue
+        longer = f"{text[:-1]}, {told}." if text else f"If left in: {told}."
         if len(longer) > width:
             break
         text = longer
