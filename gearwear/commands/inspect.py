@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from gearwear.diagnose.found import Loop
     from gearwear.inspection import Settings
     from gearwear.inspection.halves import Half
-    from gearwear.inspection.inspection import Inspection
     from gearwear.inspection.tolerances import Edition
 
 DESCRIPTION = """\
@@ -202,7 +201,7 @@ def _run(arguments: Namespace) -> None:
     if not arguments.quiet:
         print_lines(
             [
-                *lines(inspection, subject(measured.part, gear, measured.scans, 80), [*notes, *_not_seen(inspection)]),
+                *lines(inspection, subject(measured.part, gear, measured.scans, 80), [*notes, *inspection.foremost]),
                 *written(arguments.out, files),
             ]
         )
@@ -386,19 +385,3 @@ def _unexplained(loop: Loop | None, gear: Gear) -> str:
     if loop is None or not loop.patterns:
         return ""
     return f"left in is a pattern without a name: {'; '.join(pattern.describe(gear.face_width) for pattern in loop.patterns)}"
-
-
-def _not_seen(inspection: Inspection) -> list[str]:
-    return [
-        note
-        for note in inspection.notes
-        if note.startswith(
-            (
-                "Profiles and helices are as",
-                "Not seen",
-                "The scan is too thin",
-                "The profile is evaluated",
-                "The helix is evaluated",
-            )
-        )
-    ]

@@ -72,6 +72,8 @@ class Inspection(Card):
         The worst of every deviation, graded.
     notes : tuple of str
         What a reader must know: what was not seen, what limits the numbers.
+    foremost : tuple of str
+        Those of them without which the numbers are read wrongly: over what range, of which flanks, felt by what.
     """
 
     gear: Gear
@@ -89,6 +91,7 @@ class Inspection(Card):
     laboratory: Laboratory | None
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]
+    foremost: tuple[str, ...] = ()
 
     def headline(self) -> str:
         graded = "no class as a whole" if self.iso_class is None else f"class {self.iso_class}"
@@ -218,14 +221,16 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             scan.seen, gear, profile, helix, circle, scan.point_noise, scan.sample_factor, given.pose_covariance
         )  # fmt: skip
     judge = Judge(Size.of(gear), given.edition, given.required_class, pitch.sector, graded)
-    notes += ball_notes(given.stylus_radius)
-    notes += limit_notes(scan.coverage, LEAST_COVERAGE, profile, helix, scan.samples.is_section)
+    limits = limit_notes(scan.coverage, LEAST_COVERAGE, profile, helix, scan.samples.is_section)
+    felt_by = ball_notes(given.stylus_radius)
+    notes += [*felt_by, *limits]
     notes += _notes_on_uncertainty(scan)
     return Inspection(
         gear=gear, settings=scan.settings, noise=scan.samples.noise, points=len(scan.samples), stray=scan.samples.stray,
         coverage=scan.coverage, profile=profile, helix=helix, pitch=pitch, runout=balls,
         dimensions=scaled_dimensions(dimensions, scale_std), topography=topography(scan.samples, 16, 24),
         laboratory=laboratory, findings=worst_findings(judge, profile, helix, pitch, balls), notes=(*notes, FOOTNOTE),
+        foremost=(*scan.notes, *felt_by, *limits),
     )  # fmt: skip
 
 
