@@ -383,7 +383,8 @@ class _Scan:
 
         Notes
         -----
-        How much of the shape a flank has stands beside a level and a slope of its own. The variances of both sides, beyond that of the noise, are compared (F).
+        How much of the shape a flank has stands beside a level and a slope of its own. Where flanks of the other side differ in it by more than noise (χ²), the
+        variances of both sides beyond the noise are compared (F).
         """
         shape, number = self.fit.cells.grid.flank_shape, self.fit.cells.grid.gear.teeth
         lost = shape(loss)[:, side.index].reshape(number, -1)
@@ -395,9 +396,13 @@ class _Scan:
         moment = np.einsum("tsc,ci->tsi", believed * seen, design)
         inverse = np.linalg.pinv(information, rcond=1e-9, hermitian=True)
         size = (inverse @ moment[..., None])[..., 2, 0]
-        by_noise = self.problem.unit * inverse[..., 2, 2].mean(axis=0)
-        spread, freedom = np.maximum(size.var(axis=0, ddof=1) - by_noise, 0.0), number - 1.0
-        return bool(spread[side.index] > float(fdtri(freedom, freedom, 1.0 - rules().significance)) * spread[side.opposite.index])
+        spread, by_noise = size.var(axis=0, ddof=1), self.problem.unit * inverse[..., 2, 2].mean(axis=0)
+        freedom, p = number - 1.0, rules().significance
+        by_chance = by_noise[side.opposite.index] * float(chdtri(freedom, p)) / freedom
+        if not spread[side.opposite.index] > by_chance:
+            return True
+        own, other = spread[[side.index, side.opposite.index]] - by_noise[[side.index, side.opposite.index]]
+        return bool(own > float(fdtri(freedom, freedom, 1.0 - p)) * other)
 
     def _known(self, model: Model) -> Model:
         """A model with what is in every one, to begin with."""
