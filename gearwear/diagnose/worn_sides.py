@@ -383,26 +383,22 @@ class _Scan:
 
         Notes
         -----
-        How much of the shape a flank has stands beside a level and a slope of its own. Where flanks of the other side differ in it by more than noise (χ²), the
-        variances of both sides beyond the noise are compared (F).
+        How much of the shape a flank has stands beside a level of its own, and with the slope it was cut with. Where the other side's flanks are alike but
+        for noise (χ²) what this side's differ in is enough; else the variances of both sides are compared (F): noise and what a maker leaves are in both.
         """
         shape, number = self.fit.cells.grid.flank_shape, self.fit.cells.grid.gear.teeth
         lost = shape(loss)[:, side.index].reshape(number, -1)
         typical = lost.sum(axis=0) / np.maximum((lost != 0.0).sum(axis=0), 1)
-        way = np.broadcast_to(np.linspace(-1.0, 1.0, shape(loss).shape[-1]), shape(loss).shape[2:]).ravel()
-        design = np.column_stack([np.ones(len(way)), way, typical])
+        design = np.column_stack([np.ones(len(typical)), typical])
         believed, seen = (shape(values).reshape(number, len(Side), -1) for values in (weight, left))
         information = np.einsum("tsc,ci,cj->tsij", believed, design, design)
         moment = np.einsum("tsc,ci->tsi", believed * seen, design)
         inverse = np.linalg.pinv(information, rcond=1e-9, hermitian=True)
-        size = (inverse @ moment[..., None])[..., 2, 0]
-        spread, by_noise = size.var(axis=0, ddof=1), self.problem.unit * inverse[..., 2, 2].mean(axis=0)
-        freedom, p = number - 1.0, rules().significance
-        by_chance = by_noise[side.opposite.index] * float(chdtri(freedom, p)) / freedom
-        if not spread[side.opposite.index] > by_chance:
+        spread, by_noise = (inverse @ moment[..., None])[..., 1, 0].var(axis=0, ddof=1), np.median(inverse[..., 1, 1], axis=0)
+        own, other, freedom, p = side.index, side.opposite.index, number - 1.0, rules().significance
+        if spread[other] < by_noise[other] * float(chdtri(freedom, p)) / freedom:
             return True
-        own, other = spread[[side.index, side.opposite.index]] - by_noise[[side.index, side.opposite.index]]
-        return bool(own > float(fdtri(freedom, freedom, 1.0 - p)) * other)
+        return bool(spread[own] > float(fdtri(freedom, freedom, 1.0 - p)) * spread[other])
 
     def _known(self, model: Model) -> Model:
         """A model with what is in every one, to begin with."""
