@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, counted, few, measured
-from gearwear.design.quantity import pretty_unit
+from gearwear.design.quantity import NORMAL_95, pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
@@ -23,7 +23,7 @@ from gearwear.diagnose.effects.scale import EFFECT, SCALE
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
 from gearwear.diagnose.jumps import jump_deviations
-from gearwear.diagnose.parameter import ParameterEstimate
+from gearwear.diagnose.parameter import ParameterEstimate, Role
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
@@ -72,6 +72,13 @@ class FoundEffect(Card):
     def or_one_of(self, names: Collection[str]) -> FoundEffect:
         """The effect, with more names that it cannot be told from."""
         return replace(self, alternatives=tuple(sorted({*self.alternatives, *names})))
+
+    @property
+    def is_sized(self) -> bool:
+        """Whether the 95 % interval of one of its sizes, or of one tooth's, leaves out nothing."""
+        known = {one.name for one in self.candidate.effect.parameters if one.role is Role.SIZE}
+        sizes = [one for name, one in self.parameters.items() if name in known]
+        return any(bool((np.abs(one.value) > NORMAL_95 * np.asarray(one.std)).any()) for one in sizes)
 
     def lowers_by(self, flanks: SurfacePoints, context: Context) -> float:
         """By how much it lowers every one of some points on flanks, mm; 0 where it is not even there."""

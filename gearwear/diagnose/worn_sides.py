@@ -107,7 +107,7 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
             if len(own):
                 beside, paid = scan.beside(by_side[0][:, own]), _price(by_side[1][own])
                 answers.append(frozenset({side}))
-                tried.append(partial(beside.slid_cost, model, answers[-1], paid))
+                tried.append(partial(beside.slid_cost, model, side, unworn, paid))
     tenable = dict[frozenset[Side], float]()
     for sides, cost in zip(answers, each(tried), strict=True):
         if cost is not None:
@@ -251,12 +251,21 @@ class _Scan:
             chosen, rest = np.append(chosen, rest[best]), np.delete(rest, best)
         return chosen
 
-    def slid_cost(self, model: Model, worn: frozenset[Side], paid: float) -> float | None:
-        """Of the best model beside wear on some sides as sliding leaves it, with what is `paid` for a form; None where it has none of that."""
-        return min(
-            (lost.cost + paid for lost in self.losses(model, worn, *wear_columns(self.fit.cells, self.problem.context, worn))),
-            default=None,
-        )
+    def slid_cost(self, model: Model, side: Side, unworn: float, paid: float) -> float | None:
+        """Of the best model beside wear on a side as sliding leaves it, with what is `paid` for a form of the other; None where it has none of that."""
+        law, on = wear_columns(self.fit.cells, self.problem.context, frozenset({side}))
+        losses = self.losses(model, frozenset({side}), law, on)
+        return min((self._or_as_cut(lost, side, lost.cost + paid, unworn) for lost in losses), default=None)
+
+    def _or_as_cut(self, lost: _Loss, side: Side, cost: float, unworn: float) -> float:
+        """What a loss costs: no less than `unworn` where it may as well be cut."""
+        return max(cost, unworn) if self._as_cut(lost, side) else cost
+
+    def _as_cut(self, lost: _Loss, side: Side) -> bool:
+        """Whether all teeth have a loss alike, and flanks of the gear's class may be cut with it, or no load leaves it."""
+        gear = self.fit.cells.grid.gear
+        allowed = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
+        return not lost.uneven and (self._form(lost.loss, side) <= allowed or not self._as_slid(lost.loss, side))
 
     def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> float | None:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
@@ -279,15 +288,17 @@ class _Scan:
             # All over alike: a thinner tooth, but for where fillets stand.
             even, on = on_worn(cells, np.ones((len(law), 1)), worn)
             shapes.append((even, on))
-        costs = [lost.cost for law, on in shapes for lost in self.losses(model, worn, law, on)]
+        losses = [lost for law, on in shapes for lost in self.losses(model, worn, law, on)]
+        costs = [lost.cost for lost in losses]
+        if len(worn) == 1:
+            # What may as well be cut is worn where that is cheaper by more than chance.
+            (side,) = worn
+            near = [unworn - rules().close < cost < unworn for cost in costs]
+            costs = [unworn if tie and self._as_cut(lost, side) else lost.cost for lost, tie in zip(losses, near, strict=True)]
         if any_shape and len(worn) == 1:
             # As free as the profile that it may have been made with, but for what wear never does.
-            gear, (side,) = cells.grid.gear, worn
-            allowed = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
             for law, on in any_wear_columns(cells, context, worn):
-                for lost in self.losses(model, worn, law, on):
-                    as_cut = not lost.uneven and (self._form(lost.loss, side) <= allowed or not self._as_slid(lost.loss, side))
-                    costs.append(max(lost.cost, unworn) if as_cut else lost.cost)
+                costs += [self._or_as_cut(lost, side, lost.cost, unworn) for lost in self.losses(model, worn, law, on)]
         return min(costs, default=None)
 
     def _on_flanks(self, side: Side) -> Ints:
