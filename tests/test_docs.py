@@ -35,6 +35,7 @@ NUMERICAL = {
     "ALIKE",
     "BATCH",
     "ENOUGH_CELLS",
+    "FEW",
     "FEWEST_FREE",
     "FEWEST_RINGS",
     "FEWEST_ROWS",
