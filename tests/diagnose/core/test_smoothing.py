@@ -7,6 +7,7 @@ import pytest
 
 from gearwear.design.surface import flank_points
 from gearwear.diagnose.loop import _or_smoothing
+from gearwear.diagnose.parameter import ParameterEstimate
 from tests.report.fake import fake_effect, fake_results
 
 
@@ -31,3 +32,19 @@ def test_what_the_scanner_may_have_done_is_not_surely_made(others, sure):
     gear = loop.context.gear
     feet = flank_points(gear, np.arange(12), np.ones(12, dtype=np.int64), np.full(12, gear.reference_roll), np.full(12, 5.0))
     np.testing.assert_allclose(loop.surely_made(feet), np.sin(np.radians(20.0)) if sure else 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters", "sized"),
+    [
+        ("coating", {"thickness_um": (20.0, 1.0)}, True),
+        ("coating", {"thickness_um": (20.0, 11.0)}, False),
+        ("scan_drift", {"closure_deg": (-0.031, 0.019), "start_deg": (357.0, 17.0)}, False),  # where it began is no size
+        ("profile_slope", {"left_um": (0.5, 2.0), "right_um": (-9.0, 2.0)}, True),
+        ("pitch", {"index_um": ((0.5, -1.0, np.nan), (2.0, 2.0, np.nan))}, False),
+        ("pitch", {"index_um": ((0.5, -9.0, np.nan), (2.0, 2.0, np.nan))}, True),
+    ],
+)
+def test_an_effect_has_a_size_where_one_of_its_intervals_leaves_out_nothing(name, parameters, sized):
+    known = {parameter: ParameterEstimate(value, std, parameter.split("_")[-1]) for parameter, (value, std) in parameters.items()}
+    assert fake_effect(name, known).is_sized is sized
