@@ -289,16 +289,17 @@ class _Scan:
             even, on = on_worn(cells, np.ones((len(law), 1)), worn)
             shapes.append((even, on))
         losses = [lost for law, on in shapes for lost in self.losses(model, worn, law, on)]
-        costs = [lost.cost for lost in losses]
-        if len(worn) == 1:
-            # What may as well be cut is worn where that is cheaper by more than chance.
-            (side,) = worn
-            near = [unworn - rules().close < cost < unworn for cost in costs]
-            costs = [unworn if tie and self._as_cut(lost, side) else lost.cost for lost, tie in zip(losses, near, strict=True)]
-        if any_shape and len(worn) == 1:
-            # As free as the profile that it may have been made with, but for what wear never does.
-            for law, on in any_wear_columns(cells, context, worn):
-                costs += [self._or_as_cut(lost, side, lost.cost, unworn) for lost in self.losses(model, worn, law, on)]
+        if len(worn) > 1:
+            return min((lost.cost for lost in losses), default=None)
+        (side,) = worn
+        # As free as the profile that it may have been made with, but for what wear never does.
+        free = any_wear_columns(cells, context, worn) if any_shape else []
+        of_no_shape = [lost for law, on in free for lost in self.losses(model, worn, law, on)]
+        costs = [self._or_as_cut(lost, side, lost.cost, unworn) for lost in of_no_shape]
+        if all(lost.cost > unworn - rules().close for lost in (*losses, *of_no_shape)):
+            # By chance alone cheaper than what may as well be cut.
+            return min((*costs, *(self._or_as_cut(lost, side, lost.cost, unworn) for lost in losses)), default=None)
+        costs += [lost.cost for lost in losses]
         return min(costs, default=None)
 
     def _on_flanks(self, side: Side) -> Ints:
