@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from gearwear.wear_law.forecast import cycles_left as cycles_left
     from gearwear.wear_law.forecast import forecast_wear as forecast_wear
 
-__version__ = "0.16.0"
+__version__ = "0.17.0"
 
 _HOME = {
     "Gear": "design.gear", "Design": "design.pair", "GearSpec": "design.spec", "InputError": "errors",

@@ -258,14 +258,13 @@ class _Scan:
         return min((self._or_as_cut(lost, side, lost.cost + paid, unworn) for lost in losses), default=None)
 
     def _or_as_cut(self, lost: _Loss, side: Side, cost: float, unworn: float) -> float:
-        """What a loss costs: no less than `unworn` where it may as well be cut."""
-        return max(cost, unworn) if self._as_cut(lost, side) else cost
+        """What a loss costs: no less than `unworn` where all teeth have it alike, and flanks of the gear's class may be cut with it, or no load leaves it."""
+        as_cut = self._within(lost, side, self.fit.cells.grid.gear.tolerance.flank_class) or not self._as_slid(lost.loss, side)
+        return max(cost, unworn) if as_cut and not lost.uneven else cost
 
-    def _as_cut(self, lost: _Loss, side: Side) -> bool:
-        """Whether all teeth have a loss alike, and flanks of the gear's class may be cut with it, or no load leaves it."""
-        gear = self.fit.cells.grid.gear
-        allowed = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
-        return not lost.uneven and (self._form(lost.loss, side) <= allowed or not self._as_slid(lost.loss, side))
+    def _within(self, lost: _Loss, side: Side, flank_class: int | None) -> bool:
+        """Whether flanks of a class may be cut with the form of a loss."""
+        return self._form(lost.loss, side) <= profile_form_tolerance(self.fit.cells.grid.gear.normal_module, flank_class)
 
     def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> float | None:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
@@ -296,10 +295,11 @@ class _Scan:
         free = any_wear_columns(cells, context, worn) if any_shape else []
         of_no_shape = [lost for law, on in free for lost in self.losses(model, worn, law, on)]
         costs = [self._or_as_cut(lost, side, lost.cost, unworn) for lost in of_no_shape]
-        if all(lost.cost > unworn - rules().close for lost in (*losses, *of_no_shape)):
-            # By chance alone cheaper than what may as well be cut.
-            return min((*costs, *(self._or_as_cut(lost, side, lost.cost, unworn) for lost in losses)), default=None)
-        costs += [lost.cost for lost in losses]
+        chance = all(lost.cost > unworn - rules().close for lost in (*losses, *of_no_shape))
+        for lost in losses:
+            # By chance alone cheaper than a form that ground flanks have.
+            made = chance and not lost.uneven and self._within(lost, side, rules().ground_class)
+            costs.append(max(lost.cost, unworn) if made else lost.cost)
         return min(costs, default=None)
 
     def _on_flanks(self, side: Side) -> Ints:
