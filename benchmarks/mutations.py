@@ -80,6 +80,8 @@ MUTATIONS = [
         ("diagnose/worn_sides.py", "if uneven and len(worn) == 1:", "if False:", "diagnose/core/test_of_the_part.py"),
         ("diagnose/found.py", "np.abs(one.value) > NORMAL_95 * np.asarray(one.std)", "np.abs(one.value) > 0.0", "diagnose/core/test_smoothing.py"),
         ("diagnose/found.py", "if one.role is Role.SIZE}", "}", "diagnose/core/test_smoothing.py"),
+        ("diagnose/flanks_differ.py", "spread[own] > float", "spread[own] > 4.0 * float", "diagnose/core/test_flanks_differ.py"),
+        ("diagnose/flanks_differ.py", "by_noise[other] * float(chdtri(freedom, p)) / freedom", "0.0", "diagnose/core/test_flanks_differ.py"),
         ("diagnose/by_tooth.py", "for _ in range(2):", "for _ in range(0):", "diagnose/core/test_shapes.py"),
         ("wear/thickness.py", "+ self.otherwise[0]", "", "comparison/test_coat_or_thick.py"),
         ("report/words/verdict.py", "wear.volume < NORMAL_95 * wear.volume_std", "False", "report/test_words.py"),

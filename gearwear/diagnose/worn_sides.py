@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
-from scipy.special import chdtri, fdtri
+from scipy.special import chdtri
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
@@ -30,6 +30,7 @@ from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.few_cells import on_few_cells
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.flank_columns import any_profile, any_wear_columns, made_profiles, on_each_side, on_worn, wear_columns
+from gearwear.diagnose.flanks_differ import differ_more
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import above_last_fillet_edge, sound_cells
 from gearwear.diagnose.robust_fit import SETTLED, Robust, Shares, robust_fit
@@ -270,23 +271,21 @@ class _Scan:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
 
         A loss of no shape that wear has by itself, which all teeth have alike, costs no less than `unworn` where flanks of the gear's class may be cut
-        with it, or where no load leaves it.
+        with it, or where no load leaves it; and no loss of one side of a form that ground flanks have, where all are by chance alone cheaper.
         """
         cells, context = self.fit.cells, self.problem.context
         law, sides = wear_columns(cells, context, worn)
+        even, on = on_worn(cells, np.ones((len(law), 1)), worn)
         shapes = [(law, sides)]
         if len(worn) > 1:  # both may have lost the same
             left, right = (law[:, sides == int(side)] for side in Side)
             shapes.append((left + right, np.zeros(left.shape[1], np.int64)))
             # Or one has lost evenly what the other has lost by sliding: of both evenly it would be a thinner tooth.
-            even, on = on_worn(cells, np.ones((len(law), 1)), worn)
             for side in Side:
                 slides, other = sides == int(side), on != int(side)
                 shapes.append((np.hstack([law[:, slides], even[:, other]]), np.concatenate([sides[slides], on[other]])))
         else:
-            # All over alike: a thinner tooth, but for where fillets stand.
-            even, on = on_worn(cells, np.ones((len(law), 1)), worn)
-            shapes.append((even, on))
+            shapes.append((even, on))  # all over alike: a thinner tooth, but for where fillets stand
         losses = [lost for law, on in shapes for lost in self.losses(model, worn, law, on)]
         if len(worn) > 1:
             return min((lost.cost for lost in losses), default=None)
@@ -386,31 +385,12 @@ class _Scan:
         return losses
 
     def _differ_more(self, left: Floats, weight: Floats, loss: Floats, side: Side) -> bool:
-        """Whether flanks of a side differ more in the shape of a loss (m,) than those of the other side do, who wore it not: as they were cut all differ.
-
-        Parameters
-        ----------
-        left, weight : (m,) float
-            What the effects leave, and how far it is believed, 1 / mm².
-
-        Notes
-        -----
-        How much of the shape a flank has stands beside a level of its own, and with the slope it was cut with. Where the other side's flanks are alike but
-        for noise (χ²) what this side's differ in is enough; else the variances of both sides are compared (F): noise and what a maker leaves are in both.
-        """
-        shape, number = self.fit.cells.grid.flank_shape, self.fit.cells.grid.gear.teeth
-        lost = shape(loss)[:, side.index].reshape(number, -1)
+        """`differ_more` of the flanks of a side in the shape of a loss (m,), in what effects leave (m,), against those of the other side, who wore it not."""
+        shape, teeth = self.fit.cells.grid.flank_shape, self.fit.cells.grid.gear.teeth
+        lost = shape(loss)[:, side.index].reshape(teeth, -1)
         typical = lost.sum(axis=0) / np.maximum((lost != 0.0).sum(axis=0), 1)
-        design = np.column_stack([np.ones(len(typical)), typical])
-        believed, seen = (shape(values).reshape(number, len(Side), -1) for values in (weight, left))
-        information = np.einsum("tsc,ci,cj->tsij", believed, design, design)
-        moment = np.einsum("tsc,ci->tsi", believed * seen, design)
-        inverse = np.linalg.pinv(information, rcond=1e-9, hermitian=True)
-        spread, by_noise = (inverse @ moment[..., None])[..., 1, 0].var(axis=0, ddof=1), np.median(inverse[..., 1, 1], axis=0)
-        own, other, freedom, p = side.index, side.opposite.index, number - 1.0, rules().significance
-        if spread[other] < by_noise[other] * float(chdtri(freedom, p)) / freedom:
-            return True
-        return bool(spread[own] > float(fdtri(freedom, freedom, 1.0 - p)) * spread[other])
+        seen, believed = (shape(values).reshape(teeth, len(Side), -1) for values in (left, weight))
+        return differ_more(seen, believed, typical, side)
 
     def _known(self, model: Model) -> Model:
         """A model with what is in every one, to begin with."""

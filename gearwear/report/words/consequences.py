@@ -67,11 +67,9 @@ def change_line(changes: tuple[Change, ...], width: int) -> str:
         shown = MISSING if change is None else number(change.before, DIGITS[_unit(change)])
         if change is None or shown == MISSING:
             continue
-        told = words.format(shown)
-        if change.before == 0.0 and name in NOTHING:
-            told = NOTHING[name]
-            if not told:
-                continue
+        told = NOTHING.get(name, words.format(shown)) if change.before == 0.0 else words.format(shown)
+        if not told:
+            continue
         longer = f"{text[:-1]}, {told}." if text else f"If left in: {told}."
         if len(longer) > width:
             break

@@ -99,11 +99,11 @@ def _wear_found(results: Results) -> str:
     wear, worst = results.wear, results.wear.deepest
     assert worst is not None
     place, depth = which_flanks([worst]), _depth(worst.max_depth)
-    text = f"{_lost(results)} is gone from {which_flanks(wear.regions, results.gear.teeth)}"
+    where = which_flanks(wear.regions, results.gear.teeth)
+    text = f"{_lost(results)} is gone from {where}"
     if wear.volume < NORMAL_95 * wear.volume_std:
-        look = "looks" if len(wear.regions) == 1 else "look"
         text = (
-            f"{which_flanks(wear.regions, results.gear.teeth)} {look} worn; {_lost(results)} is missing there, which may be none"
+            f"{where} {'looks' if len(wear.regions) == 1 else 'look'} worn; {_lost(results)} is missing there, which may be none"
         )
     text += f", up to {depth} deep" if len(wear.regions) == 1 else f"; deepest, by {depth}, on {place}"
     tooth = wear.thinnest
