@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -88,28 +89,37 @@ def radial_findings(size: Size, composite: Composite | None) -> tuple[Finding, .
     return tuple(out)
 
 
-def limit_notes(coverage: Floats, least: float, profile: Evaluation, helix: Evaluation, section: bool) -> list[str]:
+class Note(NamedTuple):
+    """What a reader must know; `foremost` where numbers are read wrongly without it."""
+
+    text: str
+    foremost: bool
+
+
+def limit_notes(coverage: Floats, least: float, profile: Evaluation, helix: Evaluation, section: bool) -> list[Note]:
     """Where the scan fell short of the standard, and which flanks have no result; `least` is the coverage a flank needs."""
-    notes = []
+    notes = list[Note]()
     covered = coverage >= least
     missing = [(f"less than {100 * least:.0f} % of the flank was seen", ~covered)]
     for name, evaluation in (("profile", profile),) if section else (("profile", profile), ("helix", helix)):
         if evaluation.cutoff > 1.01 * evaluation.range.cutoff:
-            notes.append(
+            thin = (
                 f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {evaluation.cutoff:.2f} mm in place of "
                 f"{evaluation.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
             )
+            notes.append(Note(thin, foremost=True))
         evaluated = np.isfinite(evaluation.slope.value)
         if evaluated.any() and evaluation.share[evaluated].min() < 0.95:
-            notes.append(
+            seen = (
                 f"Of the {name} evaluation range as little as {100 * evaluation.share[evaluated].min():.0f} % was seen with enough points; the "
                 "deviations are those of what was seen."
             )
+            notes.append(Note(seen, foremost=False))
         missing.append((f"too large a gap in the {name} evaluation range", covered & ~evaluated))
     for why, flanks in missing:
         names = [f"{tooth + 1} {tuple(Side)[side]}" for tooth, side in zip(*np.nonzero(flanks), strict=True)]
         if names:
-            notes.append(f"Not seen ({why}): tooth {', '.join(names)}.")
+            notes.append(Note(f"Not seen ({why}): tooth {', '.join(names)}.", foremost=True))
     return notes
 
 

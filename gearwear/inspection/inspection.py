@@ -198,6 +198,8 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     gauge, pins = _gauges(gear, given, notes)
     scan = prepare(points, gear, given)
     notes += scan.notes
+    if scan.samples.is_section:
+        notes.append("A planar section: profile, pitch and dimensions are those at one height, and there is no helix.")
     over_face = scan.profiles(scan.profile_band)
     profile, helix, common = _evaluated(scan, over_face)
     over_pitch = over_face if scan.pitch_band == scan.profile_band else scan.profiles(scan.pitch_band)
@@ -223,14 +225,14 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     judge = Judge(Size.of(gear), given.edition, given.required_class, pitch.sector, graded)
     limits = limit_notes(scan.coverage, LEAST_COVERAGE, profile, helix, scan.samples.is_section)
     felt_by = ball_notes(given.stylus_radius)
-    notes += [*felt_by, *limits]
+    notes += [*felt_by, *(limit.text for limit in limits)]
     notes += _notes_on_uncertainty(scan)
     return Inspection(
         gear=gear, settings=scan.settings, noise=scan.samples.noise, points=len(scan.samples), stray=scan.samples.stray,
         coverage=scan.coverage, profile=profile, helix=helix, pitch=pitch, runout=balls,
         dimensions=scaled_dimensions(dimensions, scale_std), topography=topography(scan.samples, 16, 24),
         laboratory=laboratory, findings=worst_findings(judge, profile, helix, pitch, balls), notes=(*notes, FOOTNOTE),
-        foremost=(*scan.notes, *felt_by, *limits),
+        foremost=(*scan.notes, *felt_by, *(limit.text for limit in limits if limit.foremost)),
     )  # fmt: skip
 
 

@@ -77,6 +77,7 @@ class PreparedScan:
     form : AdditiveForm or None
         Smooth form of every flank; None of a dense scan, which needs none.
     notes : tuple of str
+        Where evaluation ranges are shorter than the standard's.
     """
 
     gear: Gear
@@ -212,7 +213,6 @@ def prepare(points: SurfacePoints, gear: Gear, settings: Settings) -> PreparedSc
     face = (helix.start, helix.end)
     if samples.is_section:
         face = (float(samples.z.min()) - 0.1, float(samples.z.max()) + 0.1)
-        notes.append("A planar section: profile, pitch and dimensions are those at one height, and there is no helix.")
     profile_band, pitch_band = settings.profile_band or face, settings.pitch_band or face
     helix_band = profile_places(gear, settings.helix_band) or (profile.start, profile.end)
     area = ((profile.start, profile.end), (helix.start, helix.end))

@@ -142,7 +142,8 @@ def test_a_flank_hardly_seen_is_not_seen(noisy, pinion):
         assert np.isnan(part.value[3, 0])
         assert np.isnan(part.value).sum() == 1
     assert np.isnan(found.dimensions.thickness.value[3])
-    assert any("Not seen" in note and "tooth 4 left" in note for note in found.notes)
+    (missing,) = (note for note in found.notes if "Not seen" in note)
+    assert "tooth 4 left" in missing and missing in found.foremost
     by = {(f.quantity, f.side): f for f in found.findings}
     assert by["cumulative_pitch", Side.LEFT].grade.verdict is Verdict.NOT_SEEN
     assert by["cumulative_pitch", Side.RIGHT].grade.verdict is not Verdict.NOT_SEEN
@@ -165,7 +166,7 @@ def test_a_planar_section_has_a_profile_and_pitch_but_no_helix(pinion):
     np.testing.assert_allclose(found.profile.slope.value, 0.02, atol=1e-7)
     assert np.isfinite(found.dimensions.thickness.value).all()
     assert np.isnan(found.helix.slope.value).all()
-    assert any("planar section" in note for note in found.notes)
+    assert any("planar section" in note for note in found.notes) and found.foremost == ()
     assert not any("helix evaluation range" in note for note in found.notes)
 
 
@@ -184,7 +185,17 @@ def test_a_scan_thinner_than_the_filter_says_so_and_keeps_slopes(pinion):
     assert any(
         "too thin for the standard's filter: in places the cut-off of the helix is 1.20 mm" in note for note in found.notes
     )
+    assert any("too thin" in note for note in found.foremost)
     assert np.nanmax(found.helix.standard) < 4.0 * np.nanmin(found.helix.standard)
+
+
+def test_a_part_of_the_range_that_was_not_seen_does_not_stand_first(noisy, pinion):
+    """A tenth of the profile of one flank: its deviations are those of the rest, and no number is read wrongly."""
+    roll = pinion.form_roll + 0.5 * (pinion.tip_roll - pinion.form_roll)
+    gap = (noisy.tooth == 3) & (noisy.side == 1) & (np.abs(noisy.roll - roll) < 0.05 * (pinion.tip_roll - pinion.form_roll))
+    found = inspect(noisy.take(~gap), pinion)
+    (partly,) = (note for note in found.notes if note.startswith("Of the profile evaluation range"))
+    assert partly not in found.foremost
 
 
 def test_nothing_seen_at_all(noisy, pinion):
