@@ -11,12 +11,17 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
+from gearwear.robust import median_scale
 from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
 from gearwear.wear.own_level import at_own_level, standing_proud
+from gearwear.wear.volume import FEWEST_PLACEBOS
 
 RIM = 0.2
 """Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
+HOLLOW = 10.0
+"""By how many standard deviations a flank's deepest place lies further below its level than usual where it stands out whatever that level is. The least
+of many scatters with a long tail: at 10 chance makes one of some 10⁴ flanks of 12 teeth, and one of 500 of three teeth (normal scatter, counted)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +91,8 @@ class StandingOut:
         Flanks where more points lie far below than strays can.
     by_level : (teeth, 2) bool
         Flanks known to be worn all over by their level.
+    hollowed : (teeth, 2) bool
+        Flanks whose deepest place stands out of their own level (`hollowed_sides`).
     beyond : (teeth, 2, rows, columns) float
         Area of what is low past the edge of what was seen on any flank, mm².
     spread, limit : float
@@ -102,6 +109,7 @@ class StandingOut:
     edge_depth: float
     pitted: Bools
     by_level: Bools
+    hollowed: Bools
     beyond: Floats
     spread: float
     limit: float
@@ -138,5 +146,30 @@ def standing_out(laid: LaidFlat, noise: float, loop: Loop | None, worn: frozense
     return StandingOut(
         mask=mask, wide=rim(mask, around) & allowed, allowed=allowed, at_ends=at_ends, edges=edges,
         edge_depth=-float(filled[at_ends].min(initial=0.0)), pitted=np.asarray(pits.any(axis=(2, 3))), by_level=by_level,
-        beyond=beyond, spread=spread, limit=limit, around=around,
+        hollowed=hollowed_sides(local[..., sheets.fillet :]), beyond=beyond, spread=spread, limit=limit, around=around,
     )  # fmt: skip
+
+
+def hollowed_sides(local: Floats) -> Bools:
+    """Sides with a place that stands out of their own level.
+
+    Parameters
+    ----------
+    local : (teeth, 2, rows, columns) float
+        Means over 3 × 3 cells of flanks, mm; nan where nothing was seen.
+
+    Returns
+    -------
+    (teeth, 2) bool
+        Whether the least of the side lies further below its median than on other sides, by `HOLLOW`; nowhere with fewer than `FEWEST_PLACEBOS` others.
+
+    Notes
+    -----
+    By pitch and thickness flanks stand at levels of their own. Where these scatter by as much as a hollow has volume, its volume stands out of nothing,
+    but its depth does. All sides are asked for their least, so that the choice of a place is in the comparison; medians, as others may be hollow too.
+    """
+    known = np.isfinite(local).any(axis=(2, 3))
+    deeper = np.full(known.shape, np.nan)
+    deeper[known] = np.nanmedian(local[known], axis=(1, 2)) - np.nanmin(local[known], axis=(1, 2))
+    usual, scatter = median_scale(deeper)
+    return np.asarray((known.sum() > FEWEST_PLACEBOS) & (np.nan_to_num(deeper) > usual + HOLLOW * scatter))

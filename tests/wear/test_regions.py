@@ -4,13 +4,15 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy import ndimage
 from scipy.stats import binom, chi2
 
 from gearwear.design.side import sides_of
 from gearwear.placing.registration import register
+from gearwear.wear.places import hollowed_sides
 from gearwear.wear.regions import Wear, find_wear
 from tests.placing.placing import binned, designed, refined
-from tests.synthetic import GearNumbers, Hole, Patch, Recipe, SlidingWear, SyntheticScan, Texture, make_scan
+from tests.synthetic import Effect, GearNumbers, Hole, Patch, Recipe, SlidingWear, SyntheticScan, Texture, make_scan
 
 GEAR = designed()
 PLAIN = Recipe(jitter=1.0)
@@ -184,6 +186,43 @@ def test_wear_near_the_noise_is_not_seen_and_well_above_it_is():
     for share, regions in ((0.2, 0), (3.0, 1)):
         patch = Patch(7, -1, 1e3 * share * unworn.limit, (37.0, 43.0), (3.0, 12.0), 0.5)
         assert len(worn(30_000, 8, patch)[1].regions) == regions
+
+
+@pytest.mark.parametrize(("depth", "regions"), [(0.0, 0), (150.0, 1), (600.0, 1)])
+def test_a_hollow_stands_out_of_flanks_that_stand_at_levels_of_their_own(depth, regions):
+    """Index and thickness of each tooth scatter by 25 µm: as much over all of a flank as the hollow has volume."""
+    random = np.random.default_rng(3)
+    levels = [
+        Effect(what, {name: tuple(random.normal(0.0, 25.0, 12))})
+        for what, name in (("pitch", "index_um"), ("thickness_variation", "thickness_um"))
+    ]
+    patch = Patch(1, 1, depth, (36.1, 44.6), (-4.0, 10.0))
+    recipe = Recipe(jitter=1.0, wear=(patch,) * regions, effects=tuple(levels), texture=Texture(2.0, 1.0))
+    scan = make_scan(recipe.of_size(60_000), 3)
+    found = wear_of(scan)
+    assert {(r.tooth, r.side) for r in found.regions} == {(1, 1)} if regions else not found.regions
+    assert abs(found.volume - scan.truth.volume_mm3) <= 3.0 * found.volume_std
+
+
+def test_by_chance_no_flank_is_hollow():
+    """Of 72,000 flanks of 12 teeth, at levels that scatter five times as much as their cells do, some 10⁻⁴; 36 would be half a per thousand."""
+    random, hollow = np.random.default_rng(0), 0
+    for _ in range(3_000):
+        cells = ndimage.uniform_filter(random.normal(size=(12, 2, 12, 16)), (1, 1, 3, 3))
+        hollow += int(hollowed_sides(cells + random.normal(0.0, 5.0, (12, 2, 1, 1))).sum())
+    assert hollow < 36
+
+
+def test_a_hollow_is_told_whatever_other_flanks_have():
+    """One of thirty times the scatter of its cells, beside eight flanks that are deeper still, and one that nobody saw."""
+    cells = ndimage.uniform_filter(np.random.default_rng(1).normal(size=(12, 2, 12, 16)), (1, 1, 3, 3))
+    cells[:8, 0, 4:8, 4:8] -= 20.0
+    cells[9, 1, 2:4, 2:4] -= 10.0
+    cells[11, 1] = np.nan
+    expected = np.zeros((12, 2), dtype=bool)
+    expected[:8, 0] = expected[9, 1] = True
+    np.testing.assert_array_equal(hollowed_sides(cells), expected)
+    assert not hollowed_sides(cells[:2]).any()  # of four sides nothing is usual
 
 
 @pytest.mark.parametrize(

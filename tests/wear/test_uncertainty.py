@@ -38,12 +38,21 @@ def test_the_deepest_place_is_a_mean_over_half_a_millimetre(size):
 
 
 @pytest.mark.parametrize(
-    ("certainty", "of_all", "deep", "number"),
-    [(4.9, 9.0, True, 0), (5.1, 9.0, False, 1), (9.0, 2.9, False, 0), (9.0, 3.1, False, 1), (9.0, 2.9, True, 1)],
+    ("certainty", "of_all", "deep", "hollow", "number"),
+    [
+        (4.9, 9.0, True, False, 0),
+        (5.1, 9.0, False, False, 1),
+        (9.0, 2.9, False, False, 0),
+        (9.0, 3.1, False, False, 1),
+        (9.0, 2.9, True, False, 1),
+        (4.9, 9.0, True, True, 1),
+        (4.9, 2.9, False, True, 0),
+    ],
     ids=str,
 )
-def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monkeypatch, certainty, of_all, deep, number):
-    """The same patch, with what its cells come to by chance, and all of its ±, set to just more and just less; and with or without a deepest place."""
+def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monkeypatch, certainty, of_all, deep, hollow, number):
+    """The same patch, with what its cells come to by chance, and all of its ±, set to just more and just less; with or without a deepest place; and
+    standing out of its flank or not."""
     cells = every_cell(GEAR, 0.5)
     flank = flanks_of(cells)
     flank[4, 0, 8:20, 4:16] = -0.1
@@ -62,6 +71,7 @@ def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monk
         np.zeros(1),
     )
     monkeypatch.setattr(regions, "region_volumes", lambda *_: given)
+    monkeypatch.setattr(places, "hollowed_sides", lambda local: np.full(local.shape[:2], hollow))
     assert len(find_wear(patch, NOISE).regions) == number
 
 
