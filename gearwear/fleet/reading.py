@@ -6,7 +6,6 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
 from typing import Any
 
 from gearwear.fleet.gauge import GaugeStudy, Repeat, gauge_study, in_accord
@@ -72,15 +71,19 @@ def read_fleet(store: Store) -> StoredFleet:
 
 def trends(fleet: StoredFleet) -> list[GearTrend]:
     """All gears of a fleet, the most urgent first."""
-    by_gear: dict[str, list[Listed]] = {}
-    for row in fleet.rows:
-        by_gear.setdefault(row.cells["gear_id"], []).append(row)
     numbers: dict[str, list[dict[str, Any]]] = {}
     for number in fleet.numbers:
         if number["quantity"] in QUANTITIES:
             numbers.setdefault(number["gear_id"], []).append(number)
-    gears = [_gear(fleet, gear_id, rows, numbers.get(gear_id, [])) for gear_id, rows in by_gear.items()]
+    gears = [_gear(fleet, gear_id, rows, numbers.get(gear_id, [])) for gear_id, rows in _by_gear(fleet.rows).items()]
     return by_urgency(with_significance(gears))
+
+
+def _by_gear(rows: Iterable[Listed]) -> dict[str, list[Listed]]:
+    by_gear: dict[str, list[Listed]] = {}
+    for row in rows:
+        by_gear.setdefault(row.cells["gear_id"], []).append(row)
+    return by_gear
 
 
 def _gear(fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Sequence[dict[str, Any]]) -> GearTrend:
@@ -123,11 +126,16 @@ def _inspections(rows: Sequence[Listed]) -> dict[str, Occasion]:
 
 def _reading(row: Mapping[str, Any], inspections: Mapping[str, Occasion]) -> Reading:
     """From a row of a table."""
-    inspection = inspections.get(row["key"], Occasion(row["inspected"], row["cycles_run"]))
+    inspection = _inspection(row, inspections)
     return Reading(
         gear_id=row["gear_id"], quantity=row["quantity"], value=row["value"], std=_known(row["std"]), inspected=inspection.inspected,
         cycles=inspection.cycles, which=inspection.which, low=_known(row["low"]), high=_known(row["high"]),
     )  # fmt: skip
+
+
+def _inspection(row: Mapping[str, Any], inspections: Mapping[str, Occasion]) -> Occasion:
+    """Of a row of a table."""
+    return inspections.get(row["key"], Occasion(row["inspected"], row["cycles_run"]))
 
 
 def _strictest(limits: Iterable[Mapping[str, float]]) -> dict[str, float]:
@@ -148,11 +156,12 @@ def gauge_studies(fleet: StoredFleet) -> tuple[list[GaugeStudy], dict[tuple[str,
 
     A part is a gear at one inspection: between two inspections it wears.
     """
+    inspections = {key: one for rows in _by_gear(fleet.rows).values() for key, one in _inspections(rows).items()}
     scans: dict[tuple[str, str], list[Repeat]] = {}
     for number in fleet.numbers:
         if number["converged"]:
             repeat = Repeat(
-                _part(number["gear_id"], number["inspected"]),
+                _part(number["gear_id"], _inspection(number, inspections)),
                 number["operator"],
                 number["repeat"],
                 number["value"],
@@ -165,5 +174,13 @@ def gauge_studies(fleet: StoredFleet) -> tuple[list[GaugeStudy], dict[tuple[str,
     return in_accord([study for study in studies if study is not None]), scans
 
 
-def _part(gear_id: str, inspected: datetime | None) -> str:
-    return " ".join(filter(None, (gear_id, shown_time(inspected))))
+def _part(gear_id: str, inspection: Occasion) -> str:
+    """A name for a gear at an inspection, which no other one has.
+
+    >>> from datetime import datetime
+    >>> _part("G1", Occasion(datetime(2026, 3, 1), 1.5e6)), _part("G1", Occasion(which=1))
+    ('G1 2026-03-01 1500000 cycles', 'G1 inspection 2')
+    """
+    run = "" if inspection.cycles is None else f"{inspection.cycles:.15g} cycles"
+    which = f"inspection {inspection.which + 1}" if inspection.which else ""
+    return " ".join(filter(None, (gear_id, shown_time(inspection.inspected), run, which)))

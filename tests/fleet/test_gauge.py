@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from datetime import datetime
 
 import numpy as np
 import pytest
 from scipy.stats import chi2
 
 from gearwear.fleet.gauge import Accord, Repeat, gauge_study, in_accord, scatter
+from gearwear.fleet.reading import gauge_studies, read_fleet
+from tests.fleet.fleets import report, row, store_of
 
 
 def scans(rng, stated=0.1, true=0.1, operators="AB", repeats=3, parts=5):
@@ -103,3 +106,34 @@ def test_where_nothing_is_stated_nothing_is_said():
     (study,) = in_accord([gauge_study("q", "", scans(np.random.default_rng(1), stated=math.nan))])
     assert (study.accord, study.repeatability) == (Accord.UNKNOWN, None)
     assert study.variance is not None
+
+
+def _studied(folder, inspections):
+    """The study of the worn volume of one gear: a scan for each (date, cycles, operator, repeat, volume)."""
+    store = store_of(folder, [(row("G", *when), report(volume=(volume, 0.05))) for *when, volume in inspections])
+    studies, scans = gauge_studies(read_fleet(store))
+    named = [scan.part for scan in scans["wear_volume_mm3", ""]]
+    return next((study for study in studies if study.quantity == "wear_volume_mm3"), None), named
+
+
+def test_a_gear_that_wears_is_another_part_at_other_cycles(tmp_path):
+    """Two scans 0.02 mm³ apart at each of two inspections of 1 and 5 mm³: repeatability is √(2 · 0.01²) of them, not the wear."""
+    study, _ = _studied(tmp_path / "s", [
+        (None, cycles, "A", str(i), volume + 0.02 * i) for cycles, volume in ((1e6, 1.0), (2e6, 5.0)) for i in range(2)
+    ])  # fmt: skip
+    assert (study.parts, study.repeats) == (("G 1000000 cycles", "G 2000000 cycles"), 2)
+    assert study.variance.repeatability.std == pytest.approx(math.sqrt(2.0) * 0.01)
+    assert study.variance.part.variance == pytest.approx(4.0**2 / 2 - 0.01**2)
+
+
+def test_scans_of_one_date_at_other_cycles_are_other_parts(tmp_path):
+    day = datetime(2026, 3, 1)
+    _, parts = _studied(tmp_path / "s", [(day, 1e6, "A", "1", 1.0), (day, 2e6, "A", "1", 5.0)])
+    assert parts == ["G 2026-03-01 1000000 cycles", "G 2026-03-01 2000000 cycles"]
+
+
+def test_without_date_and_cycles_repeats_are_told_apart_or_none(tmp_path):
+    study, _ = _studied(tmp_path / "told", [(None, None, "A", str(i), 1.0 + 0.02 * i) for i in range(2)])
+    assert (study.parts, study.repeats) == (("G",), 2)
+    none, parts = _studied(tmp_path / "not", [(None, None, "", "", 1.0), (None, None, "", "", 5.0)])
+    assert none is None and parts == ["G", "G inspection 2"]
