@@ -160,6 +160,15 @@ def test_what_is_not_understood_is_refused_with_its_line(tmp_path, design, rows,
         read_traces(written(tmp_path, *rows), design)
 
 
+def test_a_row_longer_than_the_header_is_refused(tmp_path, design):
+    """Decimal commas between commas: read by place, 12,5 and -1,5 would be a roll of 12 mm and a deviation of 5 µm."""
+    path = written(tmp_path, "# a remark", *profile(lambda roll: 0.0), "pinion,profile,2,left,12,5,,-1,5")
+    with pytest.raises(InputError, match=r"traces.csv: line 6 has 9 cells and line 1 names 7 columns"):
+        read_traces(path, design)
+    short = written(tmp_path, *profile(lambda roll: -2.0), header="part,kind,tooth,flank,roll_mm,z_mm,deviation_um,place,remark")
+    assert read_traces(short, design)[0] == "pinion"  # what is missing at the end is left out
+
+
 @pytest.mark.long
 def test_traces_that_inspect_writes_are_read(tmp_path, design):
     """Written by the inspection of flanks 30 µm down, with 10 µm of helix slope: the same gear comes back."""

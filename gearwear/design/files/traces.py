@@ -237,6 +237,8 @@ def _rows(path: Path, text: str) -> Iterator[_Row]:
             raise InputError(f"{path}: has no column {name}; {HEADER} would be right")
     for number, line in lines[1:]:
         values = _cells(f"{path}:{number}", line, separator)
+        if len(values) > len(names):
+            raise InputError(f"{path}: line {number} has {len(values)} cells and line {lines[0][0]} names {len(names)} columns")
         row = _Row(f"{path}:{number}", dict(zip(names, (value.strip() for value in values), strict=False)), separator != ",")
         if row.words.get("kind") not in KINDS:
             raise row.wrong(f"kind {row.words.get('kind', '')!r}", " or ".join(KINDS))
