@@ -108,6 +108,7 @@ MUTATIONS = [
         ("fleet/significance.py", "level / (len(order) - rank)", "level", "fleet/test_gauge.py"),
         ("fleet/anova.py", "POOLED = 0.25", "POOLED = 0.999", "fleet/test_anova.py"),
         ("fleet/anova.py", "SHARE = 0.95", "SHARE = 0.8", "fleet/test_anova.py"),
+        ("fleet/anova.py", "ROUNDING = 16.0", "ROUNDING = 0.0", "fleet/test_anova.py"),
         ("fleet/gauge.py", "weights=1.0 / std**2", "weights=None", "fleet/test_gauge.py"),
         ("fleet/keys.py", 'tables.pop("limits", None)', "pass", "fleet/test_keys.py"),
         ("fleet/keys.py", "FRESH = 2.0", "FRESH = -1e6", "fleet/test_keys.py"),

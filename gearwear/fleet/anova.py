@@ -17,6 +17,8 @@ from gearwear.arrays import Floats
 
 POOLED = 0.25
 """Chance from which on the interaction of operators and parts is taken for repeatability."""
+ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
+"""Of the greatest value: differences of means below it are not told from none."""
 SHARE = 0.95
 """That intervals hold the truth."""
 WHOLES = {
@@ -145,8 +147,7 @@ def gauge_variance(values: Floats) -> GaugeVariance:
         crossed = cell - by_part[:, None] - by_operator[None, :] + mean
         squares["operator"] = MeanSquare(p * r * float(np.square(by_operator - mean).sum()) / (o - 1), o - 1)
         squares["interaction"] = MeanSquare(r * float(np.square(crossed).sum()) / ((p - 1) * (o - 1)), (p - 1) * (o - 1))
-        inner, error = squares["interaction"], squares["repeat"]
-        chance = float(fdtrc(inner.degrees, error.degrees, inner.value / error.value)) if error.value > 0.0 else math.nan
+        chance = _chance(squares["interaction"], squares["repeat"], r * (ROUNDING * float(np.abs(values).max())) ** 2)
         pooled = not chance <= POOLED
     terms, used = _terms(p, o, r, pooled), _used(squares, pooled)
     components = {name: _component(weights, used) for name, weights in terms.items()}
@@ -158,6 +159,16 @@ def gauge_variance(values: Floats) -> GaugeVariance:
         repeatability=components["repeatability"], operator=components.get("operator"), interaction=components.get("interaction"),
         reproducibility=components.get("reproducibility"), gauge=components["gauge"], part=components["part"], total=components["total"],
     )  # fmt: skip
+
+
+def _chance(interaction: MeanSquare, repeat: MeanSquare, nothing: float) -> float:
+    """Chance of such an interaction where there is none; a mean square up to `nothing` is none.
+
+    Beside repeats that are all identical any interaction is real, and where there is none either, chance explains it.
+    """
+    if repeat.value > nothing:
+        return float(fdtrc(interaction.degrees, repeat.degrees, interaction.value / repeat.value))
+    return 0.0 if interaction.value > nothing else 1.0
 
 
 def _used(squares: Mapping[str, MeanSquare], pooled: bool) -> dict[str, MeanSquare]:

@@ -89,6 +89,26 @@ def test_numbers_that_are_all_alike():
     assert found.categories is None and math.isnan(found.share)
 
 
+@pytest.mark.parametrize("repeats", [2, 3])
+def test_an_interaction_beside_identical_repeats_is_real(repeats):
+    """Cells ± 0.1 crosswise: a mean square of r · 4 · 0.1², all of it interaction, whose variance is 4 · 0.1²."""
+    crossed = np.repeat(np.array([[0.1, -0.1], [-0.1, 0.1]])[..., None] + 7.3, repeats, axis=2)
+    found = gauge_variance(crossed)
+    assert (found.p_interaction, found.pooled) == (0.0, False)
+    assert found.interaction.variance == pytest.approx(0.04)
+    assert found.repeatability.variance == pytest.approx(0.0, abs=1e-25)
+
+
+@pytest.mark.parametrize("repeats", [2, 3])
+def test_identical_repeats_without_interaction(repeats):
+    """Parts and operators add up, but for rounding: 0.1 + 0.2 is not 0.3."""
+    added = np.add.outer([0.1, 0.7, 1.3], [0.2, 0.5])[..., None]
+    found = gauge_variance(np.repeat(added, repeats, axis=2))
+    assert (found.p_interaction, found.pooled) == (1.0, True)
+    assert found.operator.variance == pytest.approx(0.5 * 0.3**2)
+    assert gauge_variance(np.full((4, 2, 3), 0.12)).p_interaction == 1.0
+
+
 @pytest.mark.parametrize("shape", [(1, 3, 3), (5, 3, 1)])
 def test_too_small_a_study(shape):
     with pytest.raises(ValueError, match="at least 2 parts"):
