@@ -231,15 +231,15 @@ def least_class(value: float, tolerance_at: Callable[[int], float], classes: ran
 def round_micrometres(value: float) -> float:
     """Rounding rule for a tolerance in µm: above 10 to 1, from 5 to 10 to 0.5, below 5 to 0.1 (ISO 1328-1:2013, 5.2.3).
 
-    Agrees with three independent implementations; of 1995, with one. Halves go up.
+    Agrees with three independent implementations; of 1995, with one. Halves go up, also those that binary numbers fall short of.
 
-    >>> [round_micrometres(v) for v in (21.55, 10.4, 7.3, 4.26)]
-    [22.0, 10.0, 7.5, 4.3]
+    >>> [round_micrometres(v) for v in (21.55, 10.4, 7.3, 4.26, 4.85)]
+    [22.0, 10.0, 7.5, 4.3, 4.9]
     """
     if math.isnan(value):
         return value
     step = 1.0 if value > 10.0 else 0.5 if value >= 5.0 else 0.1
-    return round(math.floor(value / step + 0.5) * step, 1)
+    return round(math.floor(round(value / step, 9) + 0.5) * step, 1)
 
 
 def _class_five_2013(size: Size, k: int) -> Tolerances:

@@ -82,10 +82,18 @@ def test_two_classes_double_the_unrounded_tolerance(edition):
         (4.96, 5.0),
         (4.94, 4.9),
         (0.84, 0.8),
+        *((round(0.1 * n + 0.05, 2), round(0.1 * (n + 1), 1)) for n in range(49)),
     ],
 )
 def test_rounding(value, rounded):
+    """With each half below 5 µm, of which most are no binary numbers."""
     assert round_micrometres(value) == rounded
+
+
+def test_a_tolerance_that_is_a_half_goes_up():
+    """z = 25, m = 2: f_Hα of class 5 is 0.4 · 2 + 0.001 · 50 + 4 = 4.85 µm."""
+    found = tolerances(Size(50.0, 2.0, 15.0, 25), 5)
+    assert round(1e3 * found.profile_slope, 6) == 4.9
 
 
 def test_rounded_tolerances_lie_on_the_grid():
