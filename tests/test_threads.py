@@ -55,7 +55,8 @@ VERBS = (
     "comparison.measured_gear.register", "comparison.closing.find_effects", "comparison.stations.compare",
     "wear.regions.find_wear", "inspection.inspection.inspect", "identify.candidates.find_candidates", "meshing.contact.mesh_contact",
     "meshing.study.study_meshing", "wear_law.fit.fit_wear_law", "wear_law.forecast.forecast_wear", "wear_law.forecast.cycles_left",
-    "report.write.write_results",
+    "report.write.write_results", "loaded.study.study_load", "loaded.contact.loaded_contact", "loaded.contact.loaded_variants",
+    "loaded.wearing.run_wear", "loaded.wearing.run_wear_ensemble", "wear_law.running.run_histories", "running.search.find_running",
 )  # fmt: skip
 
 

@@ -132,7 +132,6 @@ def compliance_models(teeth: tuple[ToothCompliance, ToothCompliance], material: 
     )
 
 
-@on_one_thread
 def not_modelled(design: Design) -> str:
     """Why a design's gears cannot be put under load, as a clause; "" where they can."""
     return "load on internal gears is not modelled" if any(gear.spec.internal for gear in design.gears.values()) else ""
@@ -144,6 +143,7 @@ def load_left_out(design: Design) -> tuple[str, ...]:
     return (f"{why}: [load] is left out, the contact is rigid",) if why else ()
 
 
+@on_one_thread
 def study_load(
     design: Design,
     flanks: tuple[ToothProfiles, ToothProfiles] | None = None,
