@@ -21,6 +21,9 @@ TOML = {"gear": {"teeth": 24, "module": 6.35, "face_width": 15.0, "profile_shift
         "# from the drawing\n\nNumber of teeth\t24\t\nNormal module\t6.35\tmm\nFace width\t15\tmm\nx\t1.27\tmm\nbore diameter\t25400\tum\n",
         "gear.teeth, 24\ngear.diametral_pitch, 4, 1/in\ngear.face_width, 15\ngear.x, 0.2, modules\ngear.bore, 25.4\n",
         "gear.teeth,24,,\ngear.m,6.35,mm,\ngear.b,15,mm,\ngear.x,0.2,,\ngear.bore,25.4,mm,\n",
+        'bore,1,"\nteeth,24,\nm,0.25,"\nb,15,mm\nx,0.2,\n',
+        '"key","value","unit"\n"teeth","24",""\n"m", "0.25", """"\n"b","15","mm"\n"x","0.2"\n"bore","25.4","mm"\n',
+        'teeth,24\n# hub, "rev B\nm,6.35,mm\nb,15,mm\n"# tip, root"\nx,0.2\nbore,25.4,mm\n',
     ],
 )
 def test_tables_say_what_the_toml_says(tmp_path, text):
@@ -55,6 +58,7 @@ def test_a_pair():
         ("teeth,24\nmodule,nan,mm", r"line 2: .* finite"),
         ("teeth,24\nteeth,25", r"line 2: teeth is given twice"),
         ("teeth", r"line 1: 1 columns; key, value, unit"),
+        ('teeth,24\n# hub, "rev B\n\nmodule,six,mm', r"line 4: module = six: must be a number"),
         ("teeth,24,-,x", r"line 1: 4 columns"),
         ("teeth,24\nx,1.2,mm", r"line 2: profile_shift in mm needs the module"),
         ("wheel.teeth,24", r"line 1: wheel.teeth: pinion., gear., pair."),

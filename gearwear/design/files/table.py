@@ -48,6 +48,8 @@ ANGLES = ("pressure_angle", "helix_angle", "protuberance_angle")
 COUNTS = ("teeth", "cutter_teeth")
 PAIR = ("centre_distance", "backlash_allowance", "baseline")
 PARTS = ("pinion", "gear", "pair")
+_REMARK = re.compile(r'\s*"?\s*#')
+"""How a line that is skipped begins; a spreadsheet puts quotes round one with a separator in it."""
 
 
 def parse_table(text: str) -> dict[str, Any]:
@@ -57,7 +59,8 @@ def parse_table(text: str) -> dict[str, Any]:
     ----------
     text : str
         Rows ``key, value, unit``; the separator is a comma, semicolon or tabulator, and with the latter two the decimal sign may be a
-        comma. Lines that are empty or begin with # are skipped, and a first row without a number that names the columns. A key is one
+        comma. Lines that are empty or begin with # are skipped, and a first row without a number that names the columns. Quotes round a cell do
+        not count, and one alone as the unit is the sign of inches. A key is one
         of the design file or a usual drawing symbol (`ALIASES`), with ``pinion.``, ``gear.`` or ``pair.`` before it where there are
         two gears; without, it belongs to ``[gear]``.
 
@@ -81,8 +84,8 @@ def parse_table(text: str) -> dict[str, Any]:
     design: dict[str, Any] = {}
     in_mm: list[tuple[int, str, str, float]] = []
     for number, row in _rows(lines, separator):
-        cells = [cell.strip() for cell in row]
-        if not any(cells) or cells[0].startswith("#"):
+        cells = [_unquoted(cell.strip()) for cell in row]
+        if not any(cells):
             continue
         if len(cells) < 2 or any(cells[3:]):
             raise InputError(f"line {number}: {len(cells)} columns; key, value, unit would be right")
@@ -113,8 +116,9 @@ def parse_table(text: str) -> dict[str, Any]:
 
 
 def _rows(lines: list[str], separator: str) -> Iterator[tuple[int, list[str]]]:
-    """Line number and cells of each row."""
-    reader = csv.reader(lines, delimiter=separator, skipinitialspace=True)
+    """Line number and cells of each row; quotes stay, as one alone is the sign of inches."""
+    rows = ("" if _REMARK.match(line) else line for line in lines)
+    reader = csv.reader(rows, delimiter=separator, quoting=csv.QUOTE_NONE)
     try:
         for row in reader:
             yield reader.line_num, row
@@ -122,8 +126,17 @@ def _rows(lines: list[str], separator: str) -> Iterator[tuple[int, list[str]]]:
         raise InputError(f"line {reader.line_num}: is no row of a table ({error}); key, value, unit would be right") from None
 
 
+def _unquoted(cell: str) -> str:
+    """A cell without the quotes round it; within them two stand for one.
+
+    >>> [_unquoted(cell) for cell in ('"face width"', 4 * '"', '"', "mm")]
+    ['face width', '"', '"', 'mm']
+    """
+    return cell[1:-1].replace('""', '"') if len(cell) > 1 and cell[0] == cell[-1] == '"' else cell
+
+
 def _separator(lines: list[str]) -> str:
-    body = [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
+    body = [line for line in lines if line.strip() and not _REMARK.match(line)]
     return max(";\t,", key=lambda sign: (sum(sign in line for line in body), sign == ";"))
 
 
