@@ -159,15 +159,18 @@ def _text(path: Path) -> str:
 
 
 def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, list[str]]]:
-    """Line number and cells of each row that says something."""
-    head = next((line for line in lines if line.strip() and not line.startswith("#")), "")
+    """Number of the first line and cells of each row that says something."""
+    lines = ["" if line.lstrip().startswith("#") else line for line in lines]
+    head = next((line for line in lines if line.strip()), "")
     reader = csv.reader(lines, delimiter=max(",;\t", key=head.count), skipinitialspace=True, strict=True)
+    begins = 1
     try:
         for cells in reader:
-            if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
-                yield reader.line_num, cells
+            if any(cell.strip() for cell in cells):
+                yield begins, cells
+            begins = reader.line_num + 1
     except csv.Error as error:
-        raise InputError(f"{path}: line {reader.line_num} is no row of a table ({error}); {NEEDS} is needed") from None
+        raise InputError(f"{path}: line {begins} is no row of a table ({error}); {NEEDS} is needed") from None
 
 
 def _check_names(path: Path, line: int, names: list[str]) -> None:

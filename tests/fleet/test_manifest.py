@@ -43,6 +43,11 @@ def test_tables_as_spreadsheets_write_them(read, sign, encoding):
     assert (row.gear_id, row.scans) == ("Ä1", ("a.ply", "b.ply"))
 
 
+def test_remarks_with_quotes_and_a_gear_whose_name_begins_with_a_hash(read):
+    rows = read('# at 20 C, "cold" room\ngear_id,design,scans\nG1,d,a\n  # "half\nG2,d,b\n"#12",d,c\n#13,d,e\n')
+    assert [(row.line, row.gear_id) for row in rows] == [(3, "G1"), (5, "G2"), (6, "#12")]
+
+
 HEAD = "gear_id,inspected,design,scans,part,units,cycles_run,repeat\n"
 
 
@@ -66,6 +71,7 @@ HEAD = "gear_id,inspected,design,scans,part,units,cycles_run,repeat\n"
     (HEAD + "G,,d.toml,s.ply,,,nan,\n", "cycles_run = 'nan'"),
     (HEAD + "G,,d.toml,s.ply,,,,\n" * 2, "line 3 is the same as line 2: a second scan of the same gear has its own `repeat`"),
     (HEAD + '"G,,d.toml\n', "is no row of a table"),
+    ("# a remark\n\ngear_id,design,scans\nG,d,s\nH,d,\"s\nI,d,s\n\nJ,d,s\n", "line 5 is no row of a table"),
 ])  # fmt: skip
 def test_what_is_wrong_is_said_with_its_line(read, text, said):
     with pytest.raises(InputError) as refused:
