@@ -385,10 +385,14 @@ def _check(gauge: Gauge, teeth: int) -> None:
     value, std = gauge.length.value, gauge.length.std
     if not (0.0 < value < math.inf and 0.0 < std < math.inf):
         raise InputError(f"{gauge.name} = {value:g} mm (± {std:g}): must be above 0")
-    if gauge.kind == "span" and not (gauge.at == int(gauge.at) and 1 <= gauge.at < teeth):
-        raise InputError(f"span over {gauge.at:g} teeth: a whole number from 1 to {teeth - 1} is needed")
+    if gauge.kind == "span" and not (
+        1 <= gauge.at < teeth and gauge.at == int(gauge.at)
+    ):  # in this order: inf and nan have no int
+        raise InputError(f"span over {gauge.at:g} teeth: a whole number from 1 to {teeth - 1} would be right")
     if gauge.kind == "over_pins" and not 0.0 < gauge.at < value:
-        raise InputError(f"pins of {gauge.at:g} mm with {value:g} mm over them: the pin must be smaller")
+        raise InputError(
+            f"pins of {gauge.at:g} mm with {value:g} mm over them: a pin above 0 mm and below {value:g} mm would be right"
+        )
 
 
 def _listed(gauges: Sequence[Gauge]) -> str:

@@ -95,6 +95,7 @@ def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
         (["--teeth", "x"], "invalid int value"),
         (["--teeth", "12", "--span", "2"], "expected 2 arguments"),
         (["--teeth", "12", "--span", "two", "29"], "--span two"),
+        (["--teeth", "24", "--span", "inf", "49"], "span over inf teeth: a whole number from 1 to 23"),
         (
             ["--teeth", "12", "--tip-diameter", "60.3", "--root-diameter", "88.9"],
             "--root-diameter 88.9 is not below --tip-diameter 60.3",

@@ -229,7 +229,15 @@ def test_the_series_hold_what_the_standards_are_known_for():
         (12, [gauge("tip_diameter", 50.0), gauge("root_diameter", 49.9)], ""),
         (12, [gauge("span", 20.0, 12)], "from 1 to 11"),
         (12, [gauge("span", 20.0, 1.5)], "a whole number"),
-        (12, [gauge("over_pins", 20.0, 25.0)], "the pin must be smaller"),
+        (12, [gauge("span", 20.0, math.inf)], "span over inf teeth: a whole number from 1 to 11 would be right"),
+        (12, [gauge("span", 20.0, math.nan)], "span over nan teeth: a whole number from 1 to 11 would be right"),
+        (
+            12,
+            [gauge("over_pins", 20.0, 25.0)],
+            "pins of 25 mm with 20 mm over them: a pin above 0 mm and below 20 mm would be right",
+        ),
+        (12, [gauge("over_pins", 170.0, 0.0)], "pins of 0 mm .* a pin above 0 mm"),
+        (12, [gauge("over_pins", 170.0, math.nan)], "pins of nan mm .* a pin above 0 mm"),
     ],
 )
 def test_what_makes_no_sense_is_refused_or_costs_dearly(teeth, gauges, what):
