@@ -258,6 +258,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
         candidates = find_candidates(
             scan.points, scan.normals, planar, arguments.module, _angle(arguments), arguments.teeth,
             None if arguments.face_width is None else arguments.face_width * unit, arguments.part, _helix(arguments),
+            None if arguments.bore is None else arguments.bore * unit,
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"{arguments.scan}: {error}") from None
@@ -272,7 +273,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
             remarks["face_width"] = "; ".join(filter(None, [inches, width_words]))
         else:
             remarks["face_width"] = f"a section does not show it; {UNKNOWN_WIDTH:g} stands for any"
-    if best.gear.spec.bore_diameter:
+    if best.gear.spec.bore_diameter and arguments.bore is None:
         remarks["bore_diameter"] = f"{seen.bore_diameter:.3f} mm seen"
     if best.proposal.thinning:
         remarks["thinning"] = "wear of all flanks would look the same"

@@ -128,6 +128,7 @@ def find_candidates(
     face_width: float | None = None,
     name: str = "gear",
     helix: Helix | None = None,
+    bore: float | None = None,
 ) -> Candidates:
     """Find the gears a scan could be of.
 
@@ -149,6 +150,8 @@ def find_candidates(
         "pinion" or "gear".
     helix : Helix or None
         Where it is known; None: as seen.
+    bore : float or None
+        Diameter, mm, 0 for none, where it is known; None: as seen. A ring has none.
 
     Returns
     -------
@@ -168,7 +171,15 @@ def find_candidates(
     check_known(module, pressure_angle)
     if face_width is not None and not 0.0 < face_width < math.inf:
         raise InputError(f"face width {face_width:g} mm: above 0 would be right")
+    if bore is not None and not 0.0 <= bore < math.inf:
+        raise InputError(f"bore {bore:g} mm: a diameter, or 0 for none, would be right")
     seen = survey(points, normals, planar)
+    if seen.internal and bore:
+        raise InputError(f"bore {bore:g} mm: the scan is of a ring, which has none; to leave it out would be right")
+    if bore is not None and not seen.internal and not bore < 2.0 * seen.root_radius:
+        raise InputError(
+            f"bore {bore:g} mm: below the root diameter of the scan, {2.0 * seen.root_radius:.3f} mm, would be right"
+        )
     if seen.internal and len(seen.halves) > 1:
         raise InputError(f"the scan looks like {seen.what}; double helical rings are out of scope")
     if seen.internal and planar:
@@ -186,6 +197,7 @@ def find_candidates(
         # A root seen beside no flanks is no bore, nor a rim.
         beside = 0.0 < seen.bore_diameter < proposal.root_diameter or seen.rim_diameter > proposal.root_diameter
         body = _known_length(seen.bore_diameter) + _rounded_length(seen.rim_diameter, 2) if beside else 0.0
+        body = body if bore is None or seen.internal else bore
         width = face_width or _rounded_width(seen, diametral_pitch(proposal.module.mm) is not None)
         try:
             gear = Gear.from_spec(spec_of(proposal, width, body, name, _groove(seen)))

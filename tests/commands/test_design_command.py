@@ -105,6 +105,10 @@ def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
         (["--teeth", "12", "--tip-diameter", "88.9", "--module", "nan"], "module nan mm"),
         ([str(EXAMPLE / "scan.ply.gz"), "--module", "-2"], "module -2 mm"),
         ([str(EXAMPLE / "scan.ply.gz"), "--face-width", "0"], "face width 0 mm: above 0 would be right"),
+        (
+            [str(EXAMPLE / "scan.ply.gz"), "--bore", "-1", "--units", "in"],
+            "bore -25.4 mm: a diameter, or 0 for none, would be right",
+        ),
         (["nowhere.ply", "--tip-diameter", "0"], "--tip-diameter beside a scan"),
         (["nowhere.ply", "--tolerance", "0"], "--tolerance beside a scan"),
         (["nowhere.ply", "--span", "3", "20"], "--span beside a scan"),
