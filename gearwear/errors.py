@@ -36,6 +36,10 @@ class NotThisGear(InputError):
         super().__init__(message)
         self.points, self.planar = points, planar
 
+    def __reduce__(self) -> tuple[type[NotThisGear], tuple[Floats, bool, str]]:
+        """Made anew in another process, which an error's own way would try with the message alone."""
+        return type(self), (self.points, self.planar, str(self))
+
 
 def readable(name: object) -> str:
     """A file's name as text that can be written anywhere: bytes of it that are no UTF-8 appear as ``\\xff``.
