@@ -26,6 +26,7 @@ from gearwear.scan.clean import clean
 from gearwear.scan.contents import Contents
 from gearwear.scan.reading import read_scan as read_files
 from gearwear.scan.types import Scan, ScanKind
+from gearwear.scan.views import views_of
 from gearwear.wear.regions import Wear
 from gearwear.wear.regions import find_wear as find_in_cells
 
@@ -378,19 +379,14 @@ def propose_design(
     """
     from gearwear.identify.candidates import find_candidates, share_on
 
-    views = [scan] if isinstance(scan, Scan) else [*scan]
-    if not views:
-        raise InputError("no scan is given; what gw.read_scan returns would be right")
-    planar = {view.kind == "section" for view in views}
-    if len(planar) > 1:
-        raise InputError("some views are planar sections, others are not; views of one kind would be right")
+    views = views_of(scan)
     normals = [view.normals for view in views if view.normals is not None]
     points = np.concatenate([view.points for view in views])
     try:
         found = find_candidates(
             points,
             np.concatenate(normals) if len(normals) == len(views) else None,
-            planar.pop(),
+            views[0].kind == "section",
             module,
             pressure_angle,
             None,

@@ -21,6 +21,7 @@ from scipy.spatial.transform import Rotation
 import gearwear as gw
 from gearwear.design.card import Card, few, measured
 from gearwear.inspection.settings import Settings
+from gearwear.meshing.study import flanks_as_drawn
 from tests.synthetic import Effect, Patch, Recipe, make_scan
 
 if TYPE_CHECKING:
@@ -343,3 +344,51 @@ def test_what_is_listed_is_what_is_public():
 def test_an_example_that_is_not_there_is_refused_with_those_that_are():
     with pytest.raises(gw.InputError, match=r"nothere: the bundled example has design.toml, scan.ply.gz, truth.json"):
         gw.example("nothere")
+
+
+def bundled() -> gw.Design:
+    return gw.read_design(gw.example())
+
+
+def turned(**how: object) -> object:
+    flanks = flanks_as_drawn(*bundled().gears.values())
+    return gw.mesh_contact(*flanks, 114.3, **how)
+
+
+def loaded(**how: object) -> object:
+    return gw.study_load(bundled(), load=gw.LoadSpec(load_per_width=100.0), **how)
+
+
+CYCLES = "one of pitch, revolution, driven, hunting would be right"
+ROUND = np.column_stack([np.cos(np.arange(500.0)), np.sin(np.arange(500.0)), np.arange(500.0)])
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (lambda: turned(cycle="revolutions"), f"cycle = 'revolutions': {CYCLES}"),
+        (lambda: turned(cycle=["pitch"]), rf"cycle = \['pitch'\]: {CYCLES}"),
+        (lambda: turned(positions_per_pitch=3.5), "positions_per_pitch = 3.5: a whole number from 1 up would be right"),
+        (lambda: turned(positions_per_pitch=0), "positions_per_pitch = 0: a whole number from 1 up would be right"),
+        (lambda: turned(start_tooth=1.5), "start_tooth = 1.5: a whole number would be right"),
+        (lambda: turned(tolerances=()), r"tolerances \(\): at least one, and none negative, would be right"),
+        (lambda: turned(drive_side="up"), "side 'up': gw.Side.LEFT"),
+        (lambda: loaded(cycle="x"), f"cycle = 'x': {CYCLES}"),
+        (lambda: loaded(start_tooth=True), "start_tooth = True: a whole number would be right"),
+        (lambda: loaded(drive_side=0), "side 0: gw.Side.LEFT"),
+        (lambda: gw.shaft_movement(*bundled().gears.values(), 114.3, 0.1, kind="foo"), "kind = 'foo': one of reference, operating, normal"),
+        (lambda: gw.register(bundled(), []), "no scan is given; what gw.read_scan returns would be right"),
+        (lambda: gw.register(bundled(), [gw.as_scan(ROUND), gw.as_scan(ROUND[:, :2])]), "views of one kind would be right"),
+        (lambda: gw.read_design("a\0b"), "cannot be read: embedded null byte; a design in TOML is needed"),
+        (lambda: gw.read_design("a\0b.csv"), "cannot be read: embedded null byte"),
+    ],
+)  # fmt: skip
+def test_what_a_verb_cannot_take_is_refused_with_what_would_be_right(ask, words):
+    with pytest.raises(gw.InputError, match=words):
+        ask()
+
+
+def test_whole_numbers_of_numpy_are_whole_numbers():
+    plain, counted = turned(cycle="pitch", start_tooth=2), turned(cycle="pitch", start_tooth=np.int64(2))
+    np.testing.assert_array_equal(plain.driven_tooth, counted.driven_tooth)
+    assert set(plain.driven_tooth) <= {1, 2, 3}

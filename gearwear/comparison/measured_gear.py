@@ -37,6 +37,7 @@ from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.strays import near_centre
 from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.types import Scan
+from gearwear.scan.views import views_of
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import (
     Borders,
@@ -352,10 +353,10 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     Raises
     ------
     InputError
-        If the scan is of something else.
+        If there is no scan, or planar sections stand beside others, or the scan is of something else.
     """
     check_part(design, part)
-    scans = (scans,) if isinstance(scans, Scan) else scans
+    scans = views_of(scans)
     check_streamed(scans, design.datum)
     scans, design = calibrated(scans, design)
     scans = at_20_degrees(scans, design.datum)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Integral, Real
+from numbers import Real
 
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.given import check_whole
 from gearwear.design.spec import AXES, shown
 from gearwear.errors import InputError
 from gearwear.inspection.k_band import KBands
@@ -113,7 +114,8 @@ class Settings:
         if self.axis is not None and self.axis not in AXES:
             raise InputError(f"axis = {shown(self.axis)}: one of {', '.join(AXES)} would be right")
         for name, least in (("required_class", 0), ("span_teeth", 1), ("sector", 1)):
-            _check_whole(name, getattr(self, name), least)
+            if getattr(self, name) is not None:
+                check_whole(name, getattr(self, name), least)
         _check_number("sample_factor", self.sample_factor, 1.0, math.inf, "a number from 1 up")
         _check_number("scale_std", self.scale_std, 0.0, 1.0, "a number from 0 to 1")
         _check_number("noise", self.noise, 0.0, LONGEST, f"0 to {LONGEST:g} mm")
@@ -130,11 +132,6 @@ class Settings:
 
 def _is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
-
-
-def _check_whole(name: str, value: object, least: int) -> None:
-    if value is not None and not (isinstance(value, Integral) and not isinstance(value, bool) and int(value) >= least):
-        raise InputError(f"{name} = {shown(value)}: a whole number from {least} up would be right")
 
 
 def _check_number(name: str, value: float | None, low: float, high: float, right: str) -> None:

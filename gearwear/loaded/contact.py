@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.given import check_choice, check_whole
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.errors import InputError
@@ -21,7 +22,7 @@ from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.rigid_advance import RigidAdvance, rigid_advance
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import tooth_compliance
-from gearwear.meshing.passes import Cycle
+from gearwear.meshing.passes import CYCLES, Cycle
 from gearwear.threads import on_one_thread
 
 POSITIONS, SLICES = 34, 15
@@ -99,7 +100,8 @@ def loaded_contact(
     Raises
     ------
     InputError
-        If the force is negative, half angles are missing, a gear is internal, or the gears do not mesh.
+        If the force is negative, half angles are missing, a gear is internal, the gears do not mesh, positions, slices or teeth are no whole
+        numbers, or the cycle is none.
 
     Examples
     --------
@@ -167,7 +169,11 @@ def loaded_variants(
         As `loaded_contact`.
     """
     side = Side.of(drive_side)
-    _check(driver, driven, force, positions_per_pitch, slices)
+    check_whole("positions_per_pitch", positions_per_pitch, 1)
+    check_whole("slices", slices, 1)
+    check_whole("start_tooth", start_tooth)
+    check_choice("cycle", cycle, CYCLES)
+    _check(driver, driven, force)
     rigid = rigid_advance(
         driver, driven, centre_distance, side, positions_per_pitch, slices, cycle, start_tooth, misalignment, variants, corners
     )
@@ -231,11 +237,9 @@ def _reach(rigid: RigidAdvance, force: float, compliance: PairCompliance) -> flo
     return 2.0 * compliance.scale * soft * force / float(rigid.widths.sum())
 
 
-def _check(driver: ToothProfiles, driven: ToothProfiles, force: float, positions: int, slices: int) -> None:
+def _check(driver: ToothProfiles, driven: ToothProfiles, force: float) -> None:
     if not 0.0 <= force < np.inf:
         raise InputError(f"force = {force:g} N: must be 0 or above")
-    if positions < 1 or slices < 1:
-        raise InputError(f"positions per pitch {positions} and slices {slices}: at least one of each")
     for part, profiles in (("driver", driver), ("driven gear", driven)):
         missing = int((~np.isfinite(profiles.half_angle)).sum())
         if missing:

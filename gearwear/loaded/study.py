@@ -10,6 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow, measured
+from gearwear.design.given import check_choice, check_whole
 from gearwear.design.load import LoadSpec
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
@@ -21,7 +22,7 @@ from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, co
 from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import ToothCompliance, tooth_compliance
-from gearwear.meshing.passes import Cycle
+from gearwear.meshing.passes import CYCLES, Cycle
 from gearwear.meshing.slices import common_width
 from gearwear.threads import on_one_thread
 
@@ -182,7 +183,7 @@ def study_load(
     Raises
     ------
     InputError
-        If the design has one gear or gears that are not modelled, no load is stated, or the gears do not mesh.
+        If the design has one gear or gears that are not modelled, no load is stated, the gears do not mesh, or side, cycle or tooth are none.
 
     Examples
     --------
@@ -192,6 +193,9 @@ def study_load(
     >>> bool(study.present.stiffness.mean() > 10.0)
     True
     """
+    check_whole("start_tooth", start_tooth)
+    check_choice("cycle", cycle, CYCLES)
+    drive_side = Side.of(drive_side)
     if design.pair is None:
         raise InputError(f"{design.source or 'the design'}: has one gear; load needs [pinion] and [gear]")
     stated = design.load if load is None else load

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from gearwear.design.gear import Gear
+from gearwear.design.given import check_choice
 from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.pair import base_radius_sum
 from gearwear.design.rack import bisect
@@ -208,8 +209,7 @@ def centre_distance_for_backlash(
     InputError
         If the backlash is negative, or the teeth are so thin that the base circles would meet first.
     """
-    if kind not in get_args(BacklashKind):
-        raise InputError(f"backlash kind {kind!r}: must be one of {', '.join(get_args(BacklashKind))}")
+    check_choice("kind", kind, get_args(BacklashKind))
     if not 0.0 <= backlash < math.inf:
         raise InputError(f"backlash = {backlash:g} mm: must be 0 or more")
     bases = sum_of_base_radii(pinion, gear)

@@ -12,13 +12,14 @@ from functools import partial
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.given import check_choice, check_whole
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import check_mesh, transverse_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
-from gearwear.meshing.passes import Cycle, Passes, Positions, pitches
+from gearwear.meshing.passes import CYCLES, Cycle, Passes, Positions, pitches
 from gearwear.meshing.slices import Slices
 from gearwear.processors import each
 from gearwear.threads import on_one_thread
@@ -85,7 +86,7 @@ def mesh_contact(
     ------
     InputError
         If half angles are missing, radii or heights do not rise, base pitches or helix angles do not match, tips dig into roots, or no
-        tooth reaches the mate; if a variant has other radii or heights.
+        tooth reaches the mate; if a variant has other radii or heights; if positions or teeth are no whole numbers, or the cycle is none.
 
     Notes
     -----
@@ -111,7 +112,10 @@ def mesh_contact(
     >>> [round(float(um), 3) + 0.0 for um in (result.transmission_error_um.min(), result.peak_to_peak_um)]
     [-100.0, 0.0]
     """
-    _check(driver, driven, centre_distance, positions_per_pitch, tolerances)
+    check_whole("positions_per_pitch", positions_per_pitch, 1)
+    check_whole("start_tooth", start_tooth)
+    check_choice("cycle", cycle, CYCLES)
+    _check(driver, driven, centre_distance, tolerances)
     _check_variants(driver, driven, variants)
     drive_side = Side.of(drive_side)
     gear, mate, n = driver.gear, driven.gear, positions_per_pitch
@@ -261,7 +265,7 @@ def _contact_ratio(advance: Floats, n: int, tolerance: float) -> float:
     return counted / (_PARTS_PER_POSITION * len(before))
 
 
-def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, n: int, tolerances: tuple[float, ...]) -> None:
+def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, tolerances: tuple[float, ...]) -> None:
     for part, profiles in (("driver", driver), ("driven gear", driven)):
         missing = int((~np.isfinite(profiles.half_angle)).sum())
         if missing:
@@ -271,8 +275,8 @@ def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, n: int, 
         for name, values, least in (("radius", profiles.radius, 2), ("z", profiles.z, 1)):
             if len(values) < least or not (np.diff(values) > 0.0).all():
                 raise InputError(f"{part}: {name} must rise strictly and have at least {least} value(s)")
-    if n < 1 or not tolerances or not min(tolerances) >= 0.0:
-        raise InputError(f"positions per pitch {n} and tolerances {tolerances}: at least one of each, tolerances not negative")
+    if not tolerances or not min(tolerances) >= 0.0:
+        raise InputError(f"tolerances {tolerances}: at least one, and none negative, would be right")
     gear, mate = driver.gear, driven.gear
     refuse(gear, "contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
     check_mesh(gear, mate)

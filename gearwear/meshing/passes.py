@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
+from gearwear.design.given import check_choice
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import turn_at
@@ -19,18 +20,20 @@ from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, Too
 
 Cycle = Literal["pitch", "revolution", "driven", "hunting"]
 """How long to turn: one pitch of teeth that are all alike, one revolution of the driver or of the driven gear, or until the same teeth meet again."""
+CYCLES: tuple[Cycle, ...] = get_args(Cycle)
 _BLOCK_BYTES = 80e6
 """Memory for the tables and results of the passes worked on at a time."""
 
 
 def pitches(cycle: Cycle, driver: Gear, driven: Gear) -> int:
-    """How many teeth of each gear pass in a cycle.
+    """How many teeth of each gear pass in a cycle; InputError if it is none.
 
     >>> from gearwear.design import Gear, GearSpec
     >>> pinion, gear = (Gear.from_spec(GearSpec("", z, 2.0, 10.0)) for z in (18, 24))
     >>> [pitches(cycle, pinion, gear) for cycle in ("pitch", "revolution", "driven", "hunting")]
     [1, 18, 24, 72]
     """
+    check_choice("cycle", cycle, CYCLES)
     of = {"pitch": 1, "revolution": driver.teeth, "driven": driven.teeth, "hunting": math.lcm(driver.teeth, driven.teeth)}
     return of[cycle]
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import get_args
 
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
+from gearwear.design.given import check_choice
 from gearwear.design.quantity import SPACE, number, sentence
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import (
@@ -118,8 +120,8 @@ def shaft_movement(
     Raises
     ------
     InputError
-        If the base pitches differ, the base circles meet at the present distance, the loss is not finite or the
-        backlash negative.
+        If the base pitches differ, the base circles meet at the present distance, the loss is not finite, the backlash negative or its
+        kind none.
 
     Notes
     -----
@@ -141,6 +143,7 @@ def shaft_movement(
       in the way                 the gear's tip digs 1.096 mm into the pinion's root circle
       in the way                 the pinion's tip digs 1.096 mm into the gear's root circle
     """
+    check_choice("kind", kind, get_args(BacklashKind))
     return _movement(pinion, gear, centre_distance, thickness_loss, backlash, kind, closest_centre_distance(pinion, gear))
 
 

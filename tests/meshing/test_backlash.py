@@ -173,7 +173,7 @@ def test_radial_closing_is_none_when_the_base_circles_meet_first(pinion, wheel):
         (lambda p, g: working_pressure_angle(p, g, 107.0), r"centre distance = 107 mm: must be above .* 107\.4069 mm"),
         (lambda p, g: working_pressure_angle(p, g, math.nan), "must be above"),
         (lambda p, g: centre_distance_for_backlash(p, g, -0.1), r"backlash = -0\.1 mm: must be 0 or more"),
-        (lambda p, g: centre_distance_for_backlash(p, g, 0.1, "radial"), "must be one of reference, operating, normal"),
+        (lambda p, g: centre_distance_for_backlash(p, g, 0.1, "radial"), "one of reference, operating, normal would be right"),
         (lambda p, g: zero_backlash_centre_distance(p, g, 8.0), "no centre distance gives it"),
     ],
 )

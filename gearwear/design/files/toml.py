@@ -146,6 +146,8 @@ def read_small(file: Path, needed: str, most: int = MOST_BYTES, usual: str = ", 
         raise InputError(f"{file}: no such file; {needed} is needed") from None
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}; {needed} is needed") from None
+    except ValueError as error:  # a name with a null byte is none
+        raise InputError(f"{file}: cannot be read: {error}; {needed} is needed") from None
     if len(data) > most:
         raise InputError(f"{file}: is larger than {most:,} bytes; {needed} is needed{usual}")
     return data
