@@ -263,7 +263,7 @@ def study_meshing(
     teeth: Sequence[int] | None = None,
     part: str | None = None,
     centre_distance: float | None = None,
-    drive: str | None = None,
+    drive: Side | str | None = None,
     cycle: Cycle | None = None,
     mate_tooth: int | None = None,
 ) -> PairStudy:
@@ -284,7 +284,7 @@ def study_meshing(
         Which one has the loss; None: the pinion.
     centre_distance : float or None
         mm, in place of the design's.
-    drive : {"left", "right"} or None
+    drive : Side, {"left", "right"} or None
         Flanks that carry, the pinion driving; None: the more worn ones, else left.
     cycle : {"revolution", "driven", "hunting"} or None
         One revolution of the pinion or of the gear, or until the same teeth meet again; None: one of the gear whose flanks are worn, of the
@@ -317,10 +317,11 @@ def study_meshing(
     if design.pair is None:
         raise InputError(f"{design.source or 'the design'}: has one gear; meshing needs [pinion] and [gear]")
     for name, value, allowed in (
-        ("part", part, ("pinion", "gear")), ("drive", drive, ("left", "right")), ("cycle", cycle, ("revolution", "driven", "hunting"))
+        ("part", part, ("pinion", "gear")), ("cycle", cycle, ("revolution", "driven", "hunting"))
     ):  # fmt: skip
         if value is not None and value not in allowed:
             raise InputError(f"{name} {value!r}: {' or '.join(allowed)} would be right")
+    side = Side.LEFT if drive is None else Side.of(drive)
     measured = each_measured(wear)
     if measured and loss is not None:
         raise InputError("wear and loss are both given: one of them")
@@ -332,7 +333,6 @@ def study_meshing(
         raise InputError(f"mate tooth {mate_tooth}: the gear has teeth from 1 to {gear.teeth}, and one of them would be right")
     exact = exact_meshing(pinion, gear, centre)
     flanks = dict(zip(("pinion", "gear"), flanks_as_drawn(pinion, gear), strict=True))
-    side = Side.of(drive or "left")
     worn = as_measured(design, measured)
     as_read = tuple(profiles for _, profiles in worn)
     notes = list(_notes(design, exact))

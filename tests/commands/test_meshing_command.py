@@ -254,11 +254,19 @@ def test_profiles_from_anywhere_are_as_good_as_a_folder(design):
         gw.study_meshing(pair, nominal_profiles(other, np.linspace(other.root_radius, other.tip_radius, 50), np.array([7.5])))
 
 
+@pytest.mark.parametrize("side", gw.Side)
+def test_the_side_that_drives_may_be_a_side_or_its_name(design, side):
+    by_side, by_name = (gw.study_meshing(gw.read_design(design), loss=0.1, drive=drive) for drive in (side, str(side)))
+    assert by_side.drive_side is by_name.drive_side is side
+    np.testing.assert_array_equal(by_side.contact.transmission_error, by_name.contact.transmission_error)
+
+
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
         ({"part": "rack"}, "part 'rack': pinion or gear"),
-        ({"drive": "up"}, "drive 'up': left or right"),
+        ({"drive": "up"}, "side 'up': gw.Side.LEFT or gw.Side.RIGHT"),
+        ({"drive": ""}, "side '': gw.Side.LEFT or gw.Side.RIGHT"),
         ({"cycle": "week"}, "cycle 'week': revolution or driven or hunting"),
         ({"loss": -0.1}, "loss -0.1 mm: must be above 0"),
         ({"loss": math.nan}, "must be above 0"),
