@@ -31,6 +31,7 @@ from gearwear.report.files.locking import tried
 from gearwear.report.files.writing import HIDDEN, check_folder, unwritable, write_data
 
 SUFFIXES = {State.DONE: ".json", State.REFUSED: ".refused", State.FAILED: ".failed"}
+"""The first counts where a batch that was killed left several of one scan."""
 TABLE = ".parquet"
 MANIFESTS, DIGESTS = "manifests", "digests.csv"
 
@@ -104,21 +105,20 @@ class Store:
         InputError
             If the folder cannot be read.
         """
-        by_suffix = {suffix: state for state, suffix in SUFFIXES.items()}
-        states: dict[str, State] = {}
+        found: dict[str, set[str]] = {}
         try:
             with os.scandir(self.folder) as entries:
                 for entry in entries:
                     stem, suffix = os.path.splitext(entry.name)
-                    if suffix in by_suffix and not stem.startswith(HIDDEN) and states.get(stem) is not State.DONE:
-                        states[stem] = by_suffix[suffix]
+                    if suffix in SUFFIXES.values() and not stem.startswith(HIDDEN):
+                        found.setdefault(stem, set()).add(suffix)
         except FileNotFoundError:
             pass
         except OSError as error:
             raise InputError(
                 f"{self.folder}: cannot be read ({error.strerror or error}); the right to read it is needed"
             ) from None
-        return states
+        return {stem: next(state for state, suffix in SUFFIXES.items() if suffix in of_scan) for stem, of_scan in found.items()}
 
     def publish(self, outcome: Outcome) -> None:
         """Write what became of a scan; InputError if it cannot be written."""

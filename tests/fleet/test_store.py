@@ -5,6 +5,7 @@ from __future__ import annotations
 import builtins
 import errno
 import os
+from contextlib import nullcontext
 from datetime import datetime
 
 import pytest
@@ -32,6 +33,15 @@ def test_states_are_those_of_the_files(store):
     store.publish(Outcome("f", State.FAILED, why="Traceback\nRuntimeError: gone"))
     assert store.states() == {"k": State.DONE, "r": State.REFUSED, "f": State.FAILED}
     assert (store.why("r", State.REFUSED), store.why("f", State.FAILED)) == ("line 3: no points", "RuntimeError: gone")
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_of_several_states_the_first_counts_in_whatever_order_a_folder_is_listed(store, monkeypatch, reverse):
+    for name in ("a.failed", "a.refused", "b.failed", "b.json", "b.refused"):
+        (store.folder / name).write_bytes(b"left\n")
+    listed = sorted(os.scandir(store.folder), key=lambda entry: entry.name, reverse=reverse)
+    monkeypatch.setattr("gearwear.fleet.store.os.scandir", lambda folder: nullcontext(listed))
+    assert store.states() == {"a": State.REFUSED, "b": State.DONE}
 
 
 def test_a_failure_that_succeeds_is_done(store):
