@@ -8,6 +8,7 @@ they are equal.
 from __future__ import annotations
 
 import math
+import operator
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
@@ -49,7 +50,7 @@ class GearSpec:
     name : str
         "pinion" or "gear"; used in messages.
     teeth : int
-        Number of teeth z, 5 to 600.
+        Number of teeth z, `FEWEST_TEETH` to `MOST_COMPUTED`; a design file has `MOST_TEETH` at most.
     normal_module : float
         m_n in mm.
     face_width : float
@@ -129,10 +130,15 @@ class GearSpec:
     protuberance_angle: float | None = None
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
+        try:
+            teeth = 0 if isinstance(self.teeth, bool) else operator.index(self.teeth)  # integers of numpy too
+        except TypeError:
+            teeth = 0
+        if not FEWEST_TEETH <= teeth <= MOST_COMPUTED:
             raise InputError(
-                f"[{self.name}] teeth = {shown(self.teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_TEETH}"
+                f"[{self.name}] teeth = {shown(self.teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_COMPUTED}"
             )
+        object.__setattr__(self, "teeth", teeth)
         check_module(self.name, self.normal_module)
         _between(self.name, "face_width", self.face_width, 1e-3, 1e5, "mm")
         _between(self.name, "pressure_angle", math.degrees(self.normal_pressure_angle), 5.0, 45.0, "degrees")

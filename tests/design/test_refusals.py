@@ -18,8 +18,10 @@ def _build(teeth: int = 20, **values: float) -> Gear:
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"teeth": 4}, "teeth = 4: must be a whole number from 5 to 600"),
-        ({"teeth": 10_001}, "teeth = 10001"),
+        ({"teeth": 4}, "teeth = 4: must be a whole number from 5 to 10000"),
+        ({"teeth": 10_001}, "teeth = 10001: must be a whole number from 5 to 10000"),
+        ({"teeth": 20.0}, "teeth = 20.0: must be a whole number"),
+        ({"teeth": "20"}, "teeth = '20': must be a whole number"),
         ({"teeth": True}, "teeth = True"),
         ({"teeth": 10**5000}, "teeth = a number of thousands of digits"),
         ({"normal_module": 0.0}, "module = 0 mm: must lie from 0.001 to 1000"),
@@ -54,6 +56,12 @@ def test_impossible_gears_are_refused_by_name_and_number(values, message):
         _build(**values)
     assert str(refused.value).startswith("[gear] ")
     assert "\n" not in str(refused.value)
+
+
+def test_teeth_counted_by_numpy_are_those_of_the_same_gear():
+    counted = GearSpec("gear", np.int64(12), 2.0, 10.0)
+    assert counted == GearSpec("gear", 12, 2.0, 10.0)
+    assert type(counted.teeth) is int
 
 
 def test_greatest_rack_tip_radius_is_the_full_radius_of_the_rack():
