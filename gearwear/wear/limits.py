@@ -15,6 +15,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.flank_columns import wear_columns
@@ -38,9 +39,9 @@ DEEPEST = 0.1
 """Limit, in modules, above which a flank is too thin to say anything."""
 FEWEST_SIDES = 3
 """Sides without wear from which on they say something."""
-FAINT, COVERAGE = 1.5, 1.96
+FAINT = 1.5
 """Standard deviations from which on means over 3 × 3 cells are counted as perhaps worn, at which half of the faintest wear is counted and nearly all
-of what is nearly found; and those of a 95 % limit."""
+of what is nearly found."""
 PLACES = np.linspace(0.05, 0.95, 10)
 """Quantiles of the density on a flank."""
 
@@ -164,7 +165,7 @@ def faint_wear(sheets: SideMaps, looked_at: Bools, noise: float, spread: float) 
     white = noise / math.sqrt(float(np.median(number[known])))
     score = np.where(known, local, 0.0) / own_spread(number, noise, spread, white)
     missing = np.where(np.abs(score) > FAINT, -np.nan_to_num(sheets.deviation) * sheets.area, 0.0).sum(axis=(2, 3))
-    return max(float(missing.sum()) + COVERAGE * math.sqrt(float((missing**2).sum())), 0.0)
+    return max(float(missing.sum()) + NORMAL_95 * math.sqrt(float((missing**2).sum())), 0.0)
 
 
 def faint_sides(cells: Cells, noise: float, loop: Loop, found: Bools, area: Floats) -> float:
@@ -217,11 +218,11 @@ def faint_sides(cells: Cells, noise: float, loop: Loop, found: Bools, area: Floa
             volume = -float(shape @ areas) / response
             variance = float(own @ covariance.apply(own[:, None])[:, 0]) + float(((own @ form) ** 2).sum())
             value, std = volume * float(own @ deviation), abs(volume) * math.sqrt(variance)
-            if value > COVERAGE * std:
+            if value > NORMAL_95 * std:
                 limits.append((value, std))
-        value, std = max(limits, key=lambda limit: limit[0] + COVERAGE * limit[1], default=(0.0, 0.0))
+        value, std = max(limits, key=lambda limit: limit[0] + NORMAL_95 * limit[1], default=(0.0, 0.0))
         lost, square = lost + value, square + std**2
-    return lost + COVERAGE * math.sqrt(square)
+    return lost + NORMAL_95 * math.sqrt(square)
 
 
 def upper_limit(volumes: Floats, covariance: Floats, which: Bools) -> float:
@@ -235,7 +236,7 @@ def upper_limit(volumes: Floats, covariance: Floats, which: Bools) -> float:
         The flanks to be summed.
     """
     std = math.sqrt(max(float(covariance[np.ix_(which, which)].sum()), 0.0))
-    return max(float(volumes[which].sum()) + COVERAGE * std, 0.0)
+    return max(float(volumes[which].sum()) + NORMAL_95 * std, 0.0)
 
 
 def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozenset[Side]) -> float:
@@ -279,7 +280,7 @@ def even_part(sheets: SideMaps, worn: frozenset[Side], as_made_std: tuple[float,
     Notes
     -----
     Nothing slides at the pitch point, and what slides leaves the face where nothing carries: a place that lost nothing by sliding there is on every
-    flank. The highest cell of the side, in the median of the teeth, tells how low even that lies, rather less than more; below `COVERAGE` standard
+    flank. The highest cell of the side, in the median of the teeth, tells how low even that lies, rather less than more; below `NORMAL_95` standard
     deviations of the level it is none.
     """
     flank = np.where(sheets.seen, sheets.deviation, np.nan)[:, :, toothed, sheets.fillet :]
@@ -290,7 +291,7 @@ def even_part(sheets: SideMaps, worn: frozenset[Side], as_made_std: tuple[float,
         if not np.isfinite(typical).any():
             continue
         highest = float(np.nanmax(typical))
-        if -highest > COVERAGE * as_made_std[side.index]:
+        if -highest > NORMAL_95 * as_made_std[side.index]:
             lost -= highest * len(heights) * int(toothed.sum()) * sheets.flank_row
     return lost
 

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
@@ -19,8 +20,6 @@ from gearwear.placing.side_maps import SideMaps, make_side_maps, window_mean, wo
 
 HIGHEST = 0.25
 """Share of a flank, its highest places, whose lower end is its level: of wear in one place that knows little until it takes most of the flank."""
-PROUD = 1.96
-"""Standard deviations of its level by which a side worn throughout must stand above the gear as made: beyond chance."""
 FEWEST_TEETH = 6
 """Teeth without wear from which on their thickness scatters."""
 SEEN = 0.5
@@ -117,7 +116,7 @@ def standing_proud(sheets: SideMaps, loop: Loop | None, worn: frozenset[Side]) -
     for axis in (0, 1):
         strips = np.where(known, above, 0.0).sum(axis=axis) / np.maximum(known.sum(axis=axis), 1)
         highest = float(strips[known.mean(axis=axis) >= SEEN].max(initial=0.0))
-        if highest > max(PROUD * loop.as_made_std[side.index], level[side.index]):
+        if highest > max(NORMAL_95 * loop.as_made_std[side.index], level[side.index]):
             level[side.index] = highest
     return level[0], level[1]
 
