@@ -127,7 +127,9 @@ def test_wear_is_first_where_there_is_any_and_has_no_sign(arrays):
 @pytest.mark.parametrize("teeth", [12, 37])
 def test_tooth_numbers_stand_outside_their_tooth(teeth):
     arrays = fake_arrays(teeth)
-    for label in tooth_labels(gear_surfaces(arrays, worn=True), arrays.gear):
+    labels = tooth_labels(gear_surfaces(arrays, worn=True), arrays.gear)
+    assert [label["text"] for label in labels] == [str(tooth) for tooth in range(1, teeth + 1)]
+    for label in labels:
         x, y, z = label["at"]
         angle = (int(label["text"]) - 1) * arrays.gear.pitch_angle
         np.testing.assert_allclose([x, y], 1.05 * arrays.gear.tip_radius * np.array([np.cos(angle), np.sin(angle)]), atol=0.05)

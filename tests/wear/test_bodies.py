@@ -27,7 +27,9 @@ def test_a_body_for_each_piece_that_is_gone_largest_first():
 
 def test_each_body_is_closed():
     """Every edge runs once in each direction."""
-    for body in worn_bodies(THREE, boxes((11.0, 1.0))):  # the second is hollow: two surfaces, and so two pieces
+    bodies = worn_bodies(THREE, boxes((11.0, 1.0)))  # the second is hollow: two surfaces, and so two pieces
+    assert len(bodies) == 3
+    for body in bodies:
         start, end = body.faces.ravel(), np.roll(body.faces, -1, axis=1).ravel()
         assert sorted(zip(start, end, strict=True)) == sorted(zip(end, start, strict=True))
 

@@ -85,7 +85,9 @@ def test_how_much_slid_is_told_also_where_the_lines_have_worn_even(single):
 
 def test_an_even_loss_alone_is_no_sliding():
     gears = pair(25.0, 10.0)
-    for fit in fit_wear_law(*gears, inside(*gears, 60), np.full(60, 0.005), np.full(60, 1e-5)):
+    fits = fit_wear_law(*gears, inside(*gears, 60), np.full(60, 0.005), np.full(60, 1e-5))
+    assert {fit.sharing for fit in fits} == {LoadSharing.NONE, LoadSharing.LINES}
+    for fit in fits:
         assert fit.amount == pytest.approx(0.0, abs=1e-9)
 
 
