@@ -11,6 +11,7 @@ import math
 import operator
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from numbers import Integral
 
 from gearwear.design.modification import AS_GENERATED, FlankModification
 from gearwear.design.tolerance import GearTolerance
@@ -200,7 +201,7 @@ class GearSpec:
             _between(self.name, "fillet_radius", self.fillet_radius, 1e-3, 1e3, "mm")
             if self.cutter_teeth is not None or self.cutter_tip_radius is not None:
                 raise InputError(f"[{self.name}] fillet_radius and a cutter are both given: one of them")
-        if self.cutter_teeth is not None and not (isinstance(self.cutter_teeth, int) and self.cutter_teeth >= FEWEST_TEETH):
+        if self.cutter_teeth is not None and not (isinstance(self.cutter_teeth, Integral) and self.cutter_teeth >= FEWEST_TEETH):
             raise InputError(
                 f"[{self.name}] cutter_teeth = {shown(self.cutter_teeth)}: must be a whole number from {FEWEST_TEETH}"
             )

@@ -271,7 +271,7 @@ def propose(
     >>> [round(1e3 * residual) for residual in best.residuals]    # µm
     [0, -25]
     """
-    if not FEWEST_TEETH <= teeth <= MOST_TEETH:
+    if not (FEWEST_TEETH <= teeth <= MOST_TEETH and teeth == int(teeth)):
         raise InputError(f"teeth = {shown(teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_TEETH}")
     check_known(module, pressure_angle)
     for gauge in gauges:

@@ -212,7 +212,10 @@ def runs_otherwise(points: Floats, gear: Gear) -> str:
         hand = "right" if hands[0] > 0.0 else "left"
         return f"its teeth are {hand} hand over the whole face, as those of one half are, and the design is double helical, {_helix(gear)}"
     else:
-        kind = _seen_helix(gear, float(np.mean(seen)) - gear.twist)
+        more = float(np.mean(seen)) - gear.twist
+        if gear.spec.gap == 0.0 and abs(more) <= max(steep, ANOTHER_ANGLE * abs(gear.twist)):
+            return ""  # normals of few points scatter: one half is off, and both together are as drawn
+        kind = _seen_helix(gear, more)
     return f"the teeth of the scan are {kind}, and the design is {_helix(gear)}"
 
 

@@ -10,7 +10,8 @@ import pytest
 
 from gearwear.design.surface import FLANK, OTHER, TIP, flank_points
 from gearwear.errors import InputError, NotThisGear
-from gearwear.placing.refusal import base_radius, check_gear, flanks_off
+from gearwear.placing import refusal
+from gearwear.placing.refusal import base_radius, check_gear, flanks_off, runs_otherwise
 from tests.placing.placing import designed
 from tests.synthetic import GearNumbers
 
@@ -88,3 +89,17 @@ def test_flanks_of_a_few_neighbouring_teeth_lie_as_far_off_as_they_do(teeth, lev
     pitch = 0.01 * random.normal(size=teeth)
     off = flanks_off(points.with_deviation(level + pitch[tooth] * side + 0.004 * random.normal(size=number)))
     assert off.distance == pytest.approx(level, abs=0.012)
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "said"),
+    [(3.0, -2.0, "double helical"), (1.5, -0.5, ""), (3.0, 3.0, "helical, right hand"), (0.5, -0.5, "")],
+    ids=str,
+)
+def test_how_teeth_run_is_told_by_both_halves_together(monkeypatch, lower, upper, said):
+    """Twists of the lower and upper half of a scan on a spur design, in the least that is called helical: a half alone may be off by its scatter."""
+    steep = np.tan(np.deg2rad(refusal.HELICAL)) / GEAR.tip_radius
+    twists = iter([lower * steep, upper * steep])
+    monkeypatch.setattr(refusal, "normal_twist", lambda *_: next(twists))
+    words = runs_otherwise(located(2_000).position, GEAR)
+    assert said in words and bool(said) is bool(words)
