@@ -247,19 +247,19 @@ def find_wear(
     stds = np.sqrt(np.diag(covariance))
     beyond_chance = np.where(least == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE) * stds
     counted = np.zeros_like(places.mask)
+    whole = places.mask[at]
+    whole[..., sheets.fillet :] |= (volumes.rest > 0.5)[:, None, None] & places.allowed[at][..., sheets.fillet :]
+    level = common_level_std(covariance, (whole * sheets.area).sum(axis=(1, 2)), where[:, 1])
     regions = list[WearRegion]()
     for i in map(int, np.flatnonzero(sure)):
         one = tuple(where[i])
-        standing = places.mask[one]
-        whole = standing.copy()
-        if volumes.rest[i] > 0.5:
-            whole[:, sheets.fillet :] |= places.allowed[one][:, sheets.fillet :]
-        region = _Flank.of(laid, volumes, i, standing, whole, where[i]).region(float(stds[i]), noise, loop, errors)
+        flank = _Flank.of(laid, volumes, i, places.mask[one], whole[i], where[i])
+        region = flank.region(float(stds[i]), noise, loop, errors, float(level[i]))
         deep = region.max_depth > BEYOND_CHANCE * region.max_depth_std
         sure[i] = places.by_level[one] or whole_side[i] or deep or region.volume > beyond_chance[i]
         if sure[i]:
             regions.append(region)
-            counted[one] = whole
+            counted[one] = whole[i]
     regions.sort(key=lambda region: -region.volume)
     looked_at = ~(rim(counted, places.around) | rim(places.at_ends, places.around))
     faint = faint_wear(sheets, looked_at, noise, places.spread) if errors else math.nan
@@ -276,6 +276,33 @@ def find_wear(
         edge_depth=places.edge_depth, unseen=sum(region.max_depth * float(places.beyond[region.tooth, region.side.index].sum()) for region in regions),
         proud=laid.proud, unsure=unsure,
     )  # fmt: skip
+
+
+def common_level_std(covariance: Floats, area: Floats, side: Ints) -> Floats:
+    """How well is known how high the flanks of each region's side stand all together, as their volumes have it.
+
+    Parameters
+    ----------
+    covariance : (k, k) float
+        Of the volumes, mm⁶.
+    area : (k,) float
+        Of the regions, mm².
+    side : (k,) int
+
+    Returns
+    -------
+    (k,) float
+        Standard deviation, mm: what volumes of two flanks of a side have in common, over their areas; 0 where a side has one region, or nothing is known.
+    """
+    result = np.zeros(len(area))
+    per_area = covariance / np.outer(area, area)
+    for which in np.unique(side):
+        own = np.flatnonzero(side == which)
+        if len(own) > 1:
+            together = per_area[np.ix_(own, own)]
+            shared = (together.sum() - np.trace(together)) / (len(own) * (len(own) - 1))
+            result[own] = math.sqrt(shared) if shared > 0.0 else 0.0
+    return result
 
 
 def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[WearRegion]) -> float:
@@ -323,11 +350,11 @@ class _Flank:
             float(volumes.value[which]), volumes.deepest[which], bool(volumes.pitted[which]),
         )  # fmt: skip
 
-    def region(self, std: float, noise: float, loop: Loop | None, errors: bool) -> WearRegion:
-        """The wear of the side, its volume known to `std`: its deepest place and pieces are of the cells that stand out."""
+    def region(self, std: float, noise: float, loop: Loop | None, errors: bool, level: float) -> WearRegion:
+        """The wear of the side, its volume known to `std` and its level to `level`, mm: its deepest place and pieces are of the cells that stand out."""
         deepest, deep_std = float(self.surface[0]), math.nan
         if errors or self.pitted or not np.isfinite(self.surface).all():
-            deepest, deep_std = self._deepest(noise, loop)
+            deepest, deep_std = self._deepest(noise, loop, level)
         patches = int(ndimage.label(self.standing, np.ones((3, 3)))[1])
         at, area_of = (self.tooth, self.side.index), self.sheets.area
         depth = np.where(self.whole, -self.filled, 0.0)
@@ -340,7 +367,7 @@ class _Flank:
             self.tooth, self.side, self.volume, std, deepest, mean, area, centroid, patches, len(self.standing) == 1, deep_std
         )
 
-    def _deepest(self, noise: float, loop: Loop | None) -> tuple[float, float]:
+    def _deepest(self, noise: float, loop: Loop | None, level: float) -> tuple[float, float]:
         """Depth of the deepest place among the cells that stand out, and its standard deviation, mm."""
         standing, deviation = self.standing, np.where(self.standing, self.filled, 0.0)
         window = max(1, round(DEEPEST_OVER / self.size))
@@ -352,7 +379,8 @@ class _Flank:
             known = loop.covariance
             steps = (known.row_step, known.column_step)
             least, deep_std, usual_std = least_mean(deviation, standing, white, (rows, window), known.texture, steps)
-            deep_std, usual_std = (math.hypot(std, loop.as_made_std[self.side.index]) for std in (deep_std, usual_std))
+            level = max(level, loop.as_made_std[self.side.index])
+            deep_std, usual_std = (math.hypot(std, level) for std in (deep_std, usual_std))
         deepest = -least
         if np.isfinite(self.surface).all():
             # How steep the surface may be it takes from the flank as a whole: where cells lie deeper than chance has it that is a pit. Half of what the

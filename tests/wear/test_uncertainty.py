@@ -9,7 +9,7 @@ import pytest
 
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear import places, regions
-from gearwear.wear.regions import find_wear
+from gearwear.wear.regions import common_level_std, find_wear
 from gearwear.wear.uncertainty import edge_covariance, torn_beyond
 from gearwear.wear.volume import Volumes
 from tests.placing.cells import every_cell, flanks_of, with_flanks
@@ -73,6 +73,15 @@ def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monk
     monkeypatch.setattr(regions, "region_volumes", lambda *_: given)
     monkeypatch.setattr(places, "hollowed_sides", lambda local: np.full(local.shape[:2], hollow))
     assert len(find_wear(patch, NOISE).regions) == number
+
+
+def test_what_volumes_of_a_side_have_in_common_is_how_high_it_stands():
+    """Four flanks of one side that share 9 µm of level and have noise of their own, three of the other that share nothing, and one by itself."""
+    random = np.random.default_rng(5)
+    area, side = random.uniform(20.0, 60.0, 8), np.array([0, 0, 1, 0, 1, 0, 1, 2])
+    shared = np.where((side[:, None] == side) & (side == 0), 0.009**2, 0.0)
+    covariance = np.outer(area, area) * shared + np.diag(random.uniform(0.1, 2.0, 8))
+    np.testing.assert_allclose(common_level_std(covariance, area, side), np.where(side == 0, 0.009, 0.0), rtol=1e-12)
 
 
 @pytest.mark.parametrize(("high", "low"), [(0.004, 0.004), (0.004, 0.0), (0.003, 0.001)])
