@@ -13,6 +13,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.collecting import Cut
 from gearwear.comparison.own_root import no_datum, on_its_root
+from gearwear.comparison.own_tips import on_its_tips, on_tips_of
 from gearwear.comparison.passes import Streamed, first_pass
 from gearwear.comparison.placed_notes import doubts_of, said_of_scale, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, clip_of, with_pits
@@ -35,6 +36,7 @@ from gearwear.placing.proportion import common_ratio
 from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.strays import near_centre
+from gearwear.placing.tip_edge import TipEdge
 from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.types import Scan
 from gearwear.scan.views import views_of
@@ -94,6 +96,8 @@ class MeasuredGear(Card):
         Which gear of the design was scanned, "pinion" or "gear".
     root : Root
         The root that the scan shows, and the gear that has it.
+    tip_edge : TipEdge
+        The edges between flanks and tips that it shows; the gear of `root` has them.
     placed : PlacedScan
         Before the loop.
     context : Context
@@ -118,6 +122,7 @@ class MeasuredGear(Card):
     scans: tuple[Scan, ...]
     part: str
     root: Root
+    tip_edge: TipEdge
     placed: PlacedScan
     context: Context
     first: Cells
@@ -131,7 +136,7 @@ class MeasuredGear(Card):
 
     @property
     def gear(self) -> Gear:
-        """The scanned gear's design, with the root and the face width that the scan shows."""
+        """The scanned gear's design, with the root, the tip edges and the face width that the scan shows."""
         return self.root.gear
 
     @property
@@ -216,7 +221,7 @@ class MeasuredGear(Card):
         smoothing = smoothing_of(self.located, self.placed.registration.noise, len(self.scans))
         sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
         told = None if self.mark is None else self.mark.sentence
-        return (*sample, *smoothing, *filter(None, [self.root.words(), told]), *self.design.datum.words)
+        return (*sample, *smoothing, *filter(None, [self.root.words(), self.tip_edge.words(), told]), *self.design.datum.words)
 
     @property
     def points(self) -> int:
@@ -343,7 +348,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     part : {"pinion", "gear"} or None
         Which one was scanned; None: the one whose size fits.
     grid : CellGrid or None
-        Cells to bin in; None: from the number of points.
+        Cells to bin in, of a gear that has the same tip edges; None: from the number of points.
 
     Returns
     -------
@@ -365,14 +370,18 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         for gear in design.gears.values():
             refuse(gear, "a planar section", Toothing.DOUBLE_HELICAL)
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
-    placed, root = on_its_root(placed, scans, drawn, planar)
+    if grid is None:
+        placed, edge = on_its_tips(placed, scans, drawn, planar)
+    else:
+        placed, edge = on_tips_of(grid.gear, placed, scans, drawn, planar)
+    placed, root = on_its_root(placed, scans, edge.gear, planar)
     motion, mark = tooth_1_of(design.datum, scans, placed, root.gear)
     if motion is not None:
         placed = _laid(placed, scans, root, planar, motion)
     if design.datum.leaves_out:
         scans = without_ignored(scans, placed, root.gear, design.datum)
         placed = _laid(placed, scans, root, planar, Pose.identity())
-    return replace(_in_cells(design, scans, name, placed, root, grid), mark=mark)
+    return replace(_in_cells(design, scans, name, placed, root, edge, grid), mark=mark)
 
 
 @on_one_thread
@@ -387,7 +396,7 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
         A symmetry of the gear, in the design frame.
     """
     placed = _laid(measured.placed, measured.scans, measured.root, measured.planar, motion)
-    again = _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, measured.first.grid)
+    again = _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, measured.tip_edge, measured.first.grid)
     return replace(again, mark=measured.mark)
 
 
@@ -397,7 +406,13 @@ def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, m
 
 
 def _in_cells(
-    design: Design, scans: tuple[Scan, ...], name: str, placed: PlacedScan, root: Root, grid: CellGrid | None
+    design: Design,
+    scans: tuple[Scan, ...],
+    name: str,
+    placed: PlacedScan,
+    root: Root,
+    tip_edge: TipEdge,
+    grid: CellGrid | None,
 ) -> MeasuredGear:
     """A placed scan without what is broken off, in cells."""
     gear, planar = root.gear, scans[0].kind == "section"
@@ -431,7 +446,7 @@ def _in_cells(
     context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
-        design=design, scans=scans, part=name, root=root, placed=placed, context=context, first=first, loop=None, final=final,
+        design=design, scans=scans, part=name, root=root, tip_edge=tip_edge, placed=placed, context=context, first=first, loop=None, final=final,
         broken=broken, fracture_points=int(border.sum()) if streamed is None else streamed.fracture_points, streamed=streamed,
     )  # fmt: skip
 

@@ -249,7 +249,9 @@ def find_wear(
     counted = np.zeros_like(places.mask)
     whole = places.mask[at]
     whole[..., sheets.fillet :] |= (volumes.rest > 0.5)[:, None, None] & places.allowed[at][..., sheets.fillet :]
-    level = common_level_std(covariance, (whole * sheets.area).sum(axis=(1, 2)), where[:, 1])
+    area = (whole * sheets.area).sum(axis=(1, 2))
+    peaks = deepest_to_mean(volumes.deepest[:, 0], volumes.value / area, where[:, 1])
+    level = common_level_std(covariance, area, where[:, 1]) * peaks
     regions = list[WearRegion]()
     for i in map(int, np.flatnonzero(sure)):
         one = tuple(where[i])
@@ -303,6 +305,13 @@ def common_level_std(covariance: Floats, area: Floats, side: Ints) -> Floats:
             shared = (together.sum() - np.trace(together)) / (len(own) * (len(own) - 1))
             result[own] = math.sqrt(shared) if shared > 0.0 else 0.0
     return result
+
+
+def deepest_to_mean(deepest: Floats, mean: Floats, side: Ints) -> Floats:
+    """How much deeper flanks of each region's side are at their deepest place than on average, (k,), in the median; at least 1. What they are wrong by in
+    common, a form of the side as it was made, may have the shape of the loss."""
+    ratio = np.where((mean > 0.0) & np.isfinite(deepest), deepest / np.maximum(mean, 1e-300), 1.0)
+    return np.array([max(float(np.median(ratio[side == which])), 1.0) for which in side])
 
 
 def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[WearRegion]) -> float:

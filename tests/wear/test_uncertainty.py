@@ -9,7 +9,7 @@ import pytest
 
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear import places, regions
-from gearwear.wear.regions import common_level_std, find_wear
+from gearwear.wear.regions import common_level_std, deepest_to_mean, find_wear
 from gearwear.wear.uncertainty import edge_covariance, torn_beyond
 from gearwear.wear.volume import Volumes
 from tests.placing.cells import every_cell, flanks_of, with_flanks
@@ -82,6 +82,12 @@ def test_what_volumes_of_a_side_have_in_common_is_how_high_it_stands():
     shared = np.where((side[:, None] == side) & (side == 0), 0.009**2, 0.0)
     covariance = np.outer(area, area) * shared + np.diag(random.uniform(0.1, 2.0, 8))
     np.testing.assert_allclose(common_level_std(covariance, area, side), np.where(side == 0, 0.009, 0.0), rtol=1e-12)
+
+
+def test_what_is_common_may_have_the_shape_of_the_loss():
+    """Three flanks that are 2, 3 and 30 times as deep at their deepest place as on average, one of the other side that is even, one of no depth known."""
+    deepest, mean = np.array([0.2, 0.3, 3.0, 0.05, np.nan]), np.array([0.1, 0.1, 0.1, 0.1, 0.1])
+    np.testing.assert_allclose(deepest_to_mean(deepest, mean, np.array([0, 0, 0, 1, 2])), [3.0, 3.0, 3.0, 1.0, 1.0])
 
 
 @pytest.mark.parametrize(("high", "low"), [(0.004, 0.004), (0.004, 0.0), (0.003, 0.001)])

@@ -22,6 +22,7 @@ from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
+from gearwear.placing.tip_edge import TipEdge
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
@@ -67,6 +68,7 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         "thinnest": _thinnest(results),
         "most_lost": _most_lost(results),
         "root": _root(results.measured.root),
+        "tip_edge": _tip_edge(results.measured.tip_edge),
         "broken": [
             {
                 "tooth": part.tooth + 1,
@@ -208,6 +210,11 @@ def _root(root: Root) -> Json:
         "misfit_um": 1e3 * root.misfit,
         "design_misfit_um": 1e3 * root.design_misfit,
     }
+
+
+def _tip_edge(edge: TipEdge) -> Json:
+    """What was found of the edges between flanks and tips."""
+    return {"fits_design": edge.fits_design, "height_mm": edge.height, "depth_um": 1e3 * edge.depth}
 
 
 def _pose(registration: Registration) -> Json:

@@ -1,0 +1,55 @@
+"""A scan on the design with its flanks ending where the scan shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from gearwear.design.gear import Gear
+from gearwear.design.surface import FILLET, ROOT
+from gearwear.placing.tip_edge import TipEdge, fit_tip_edge
+from gearwear.placing.views import PlacedScan, place
+from gearwear.scan.types import Scan
+
+EDGE_PASSES = 2
+"""An edge found in a pose that its points have bent is looked for once more in the better one."""
+
+
+def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, TipEdge]:
+    """The scan on the design with the edges between flanks and tips that it shows.
+
+    Parameters
+    ----------
+    placed : PlacedScan
+        On the design's own edges.
+    scans : sequence of Scan
+        Views of one gear.
+    gear : Gear
+        The design.
+    planar : bool
+        True for planar sections.
+    """
+    edge = fit_tip_edge(placed.located, gear, placed.registration.noise)
+    for _ in range(EDGE_PASSES):
+        if edge.fits_design:
+            break
+        placed = _placed_on(edge.gear, placed, scans, planar)
+        again = fit_tip_edge(placed.located, gear, placed.registration.noise)
+        if again.fits_design or again.height == edge.height:
+            break
+        edge = again
+    return placed, edge
+
+
+def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, TipEdge]:
+    """The same with the edges of another gear, as the same one has after wear."""
+    if (other.spec.tip_chamfer, other.spec.tip_rounding) == (gear.spec.tip_chamfer, gear.spec.tip_rounding):
+        return placed, TipEdge(gear)
+    gear = Gear.from_spec(replace(gear.spec, tip_chamfer=other.spec.tip_chamfer, tip_rounding=other.spec.tip_rounding))
+    return _placed_on(gear, placed, scans, planar), TipEdge(gear, other.spec.tip_chamfer)
+
+
+def _placed_on(gear: Gear, placed: PlacedScan, scans: Sequence[Scan], planar: bool) -> PlacedScan:
+    """The scans laid on a gear, from where they are."""
+    unknown = frozenset[int]() if gear.root_stated else frozenset({FILLET, ROOT})
+    return place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar, placed, unknown)
