@@ -396,7 +396,9 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
         A symmetry of the gear, in the design frame.
     """
     placed = _laid(measured.placed, measured.scans, measured.root, measured.planar, motion)
-    again = _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, measured.tip_edge, measured.first.grid)
+    again = _in_cells(
+        measured.design, measured.scans, measured.part, placed, measured.root, measured.tip_edge, measured.first.grid
+    )
     return replace(again, mark=measured.mark)
 
 

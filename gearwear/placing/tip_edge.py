@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -106,7 +107,7 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
     top = float(np.quantile(height, ABOVE))
     first = top + max(OFF_LAND * m, OFF_LAND_STDS * noise)
     reach = min(REACH * m, REACH * way * (gear.tip_radius - gear.form_radius))
-    edges = first + STEP * m * np.arange(int((top + reach - first) / (STEP * m)) + 1)
+    edges = np.asarray(first + STEP * m * np.arange(int((top + reach - first) / (STEP * m)) + 1), dtype=np.float64)
     profiles = [_medians(height[on], flank.deviation[on], edges) for on in (flank.side > 0, flank.side < 0)]
     fall = np.min([(one[OVER:] - one[:-OVER]) / (OVER * STEP * m) for one in profiles], axis=0)  # from the tip down
     steep = np.flatnonzero(~(fall > STEEPEST_FLANK))
@@ -145,7 +146,7 @@ def _medians(height: Floats, deviation: Floats, edges: Floats) -> Floats:
     """Median of the deviations bin by bin of height, nan where there are too few."""
     order = np.argsort(height, kind="stable")
     cuts = np.searchsorted(height[order], edges)
-    parts = [deviation[order[start:stop]] for start, stop in zip(cuts[:-1], cuts[1:], strict=True)]
+    parts = [deviation[order[start:stop]] for start, stop in pairwise(cuts)]
     return np.array([np.median(part) if len(part) >= LEAST_IN_BIN else math.nan for part in parts])
 
 
