@@ -138,7 +138,7 @@ class Bands:
 
     @classmethod
     def wide(cls, gear: Gear) -> Bands:
-        """Bands before anything is known of the scan: 0.1 modules; flanks −0.6 of the thickness … +0.15 modules."""
+        """Bands before anything is known of the scan: ±0.2 transverse modules; flanks −0.6 of the thickness … +0.3 modules."""
         m = gear.transverse_module
         near = (-0.2 * m, 0.2 * m)
         return cls(near, near, near, near, near, (-0.6 * gear.tooth_thickness, 0.3 * m))

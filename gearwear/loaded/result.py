@@ -107,10 +107,16 @@ class LoadedContact(Card):
         return float(np.ptp(self.rigid_transmission_error))
 
     def harmonics(self, count: int = 5, rigid: bool = False) -> Floats:
-        """Amplitudes of the transmission error at 1 to `count` times the mesh frequency, mm."""
+        """Amplitudes of the transmission error at 1 to `count` times the mesh frequency, mm.
+
+        Positions tell no order beyond half of those in a pitch, for which 0 stands. At half they tell the part that is greatest or least at
+        them, a cosine from the first position on.
+        """
         error = self.rigid_transmission_error if rigid else self.transmission_error
         pitches = len(error) // self.per_pitch
         spectrum = 2.0 * np.abs(np.fft.rfft(error)) / len(error)
+        if len(error) % 2 == 0:
+            spectrum[-1] *= 0.5  # half the sampling rate is its own negative: one line, not two
         orders = pitches * np.arange(1, count + 1)
         return np.asarray(
             np.where(orders < len(spectrum), spectrum[np.minimum(orders, len(spectrum) - 1)], 0.0), dtype=np.float64
@@ -129,7 +135,7 @@ class LoadedContact(Card):
 
     @property
     def load_share(self) -> Floats:
-        """(p, m) share of the force on each pair; the foremost carries all without load."""
+        """(p, m) share of the force on each pair; 0 without load."""
         return self.force.sum(axis=2) / self.total if self.total > 0.0 else np.zeros(self.force.shape[:2])
 
     @property

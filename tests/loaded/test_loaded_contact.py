@@ -198,8 +198,17 @@ def test_a_revolution_is_so_many_pitches_and_its_spectrum_that_of_the_mesh(pinio
     np.testing.assert_allclose(turn.harmonics(), pitch.harmonics(), atol=1e-9)
     # Parseval over all harmonics of the mesh.
     every = pitch.harmonics(17)
-    every[-1] *= 0.5  # at half the sampling rate the one line stands for both signs
     assert 0.5 * (every[:-1] ** 2).sum() + every[-1] ** 2 == pytest.approx(pitch.transmission_error.var(), rel=1e-9)
+
+
+@pytest.mark.parametrize("order", [1, 5, 17])
+def test_harmonics_of_a_cosine_are_its_amplitude(pinion, wheel, elastic, order):
+    """Also at half the positions of a pitch (Nyquist); what is beyond is 0."""
+    found = one_pitch(pinion, wheel, 100.0, elastic, slices=1)
+    wave = 3e-3 * np.cos(2.0 * np.pi * order * np.arange(found.per_pitch) / found.per_pitch)
+    assert found.per_pitch == 34
+    amplitudes = replace(found, transmission_error=wave).harmonics(20)
+    np.testing.assert_allclose(amplitudes, np.where(np.arange(1, 21) == order, 3e-3, 0.0), atol=1e-17)
 
 
 def test_hertz_by_hand():
