@@ -97,6 +97,10 @@ def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "ar
     name : str
         What the report calls it.
 
+    Returns
+    -------
+    Scan
+
     Raises
     ------
     InputError
@@ -260,10 +264,10 @@ def write(
         Of a comparison: "ply", "npz", "parquet", "topography", "glb".
     sections : sequence of float or None
         Of a comparison: heights of section curves in mm, on the face; an empty one: every 0.2 mm; None: no curves.
-    law : WearStudy or None
-        With a `PairStudy`: the wear law on measured traces.
     loaded : LoadedStudy or None
         Of a pair in mesh: the same pair under load, of `study_load`.
+    law : WearStudy or None
+        With a `PairStudy`: the wear law on measured traces.
     page, pdf : bool
         Of a comparison: whether to write ``report.html`` and ``report.pdf``.
 

@@ -112,6 +112,8 @@ class MeasuredGear(Card):
         What is broken off, and teeth that were not seen; the points of fractures are not in `placed` nor `located`.
     fracture_points : int
         How many these are.
+    undecided : tuple of MeasuredGear
+        The same scan with other sides worn throughout, as far as the scan does not exclude them.
     streamed : Streamed or None
         All points of a scan of which `placed` and `final` hold a sample; their cells are of all.
     mark : SeenMark or None

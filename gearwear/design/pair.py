@@ -246,7 +246,7 @@ def tip_penetration(member: Gear, mate: Gear, centre_distance: float) -> float:
 
     Parameters
     ----------
-    own, mate : Gear
+    member, mate : Gear
         The gear whose tooth is dug into, and the one whose tip does it.
     centre_distance : float
         Working centre distance in mm, above the sum of the base radii, or with a ring above their difference.
@@ -254,12 +254,12 @@ def tip_penetration(member: Gear, mate: Gear, centre_distance: float) -> float:
     Returns
     -------
     float
-        Greatest depth, mm of arc about the own axis; 0 or a few 1e-15 where the tip clears.
+        Greatest depth, mm of arc about the member's axis; 0 or a few 1e-15 where the tip clears.
 
     Notes
     -----
     Roll lengths of two touching flanks add up to the line of action, ``L1 + L2 = a sin α_w``, which ties the two
-    rotations together. So the corner's path in the own gear's frame is known, and its polar angle is held against
+    rotations together. So the corner's path in the member's frame is known, and its polar angle is held against
     the generated tooth side. Above the form circle it only touches; what it can meet is the fillet.
     2001 positions: the depth is within 1e-6 of itself.
     """

@@ -82,8 +82,10 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
     fit, problem : Fit, Problem
         As the search without wear left them: their cells, correlation and unit are those of all hypotheses, so that none is favoured by its own
         noise.
-    model : tuple of Candidate
+    model : Model
         What that search chose.
+    noise : float
+        Scatter of points, mm.
 
     Returns
     -------

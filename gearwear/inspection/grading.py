@@ -111,10 +111,12 @@ def grade(
         Field of `Tolerances`.
     value, expanded : float
         Deviation and its expanded uncertainty U, mm.
-    size, edition, sector
+    size, edition
         See `tolerances`.
     required : int or None
         Class the drawing asks for; None: find the class.
+    sector : int or None
+        See `tolerances`.
 
     Returns
     -------

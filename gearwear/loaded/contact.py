@@ -151,12 +151,16 @@ def loaded_variants(
 
     Parameters
     ----------
-    driver, driven, centre_distance, force, drive_side, misalignment, positions_per_pitch, slices, cycle, start_tooth, corners
+    driver, driven, centre_distance, force
         As for `loaded_contact`.
     models : sequence of PairCompliance
         At least one.
+    drive_side : Side
+        As for `loaded_contact`.
     variants : sequence of (ToothProfiles, ToothProfiles)
         Drivers and driven gears on the radii of these; their rigid advance is taken to first order in the difference.
+    misalignment, positions_per_pitch, slices, cycle, start_tooth, corners
+        As for `loaded_contact`.
 
     Returns
     -------

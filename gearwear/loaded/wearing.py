@@ -260,13 +260,15 @@ def run_wear_ensemble(
 
     Parameters
     ----------
-    driver, driven, centre_distance, positions_per_pitch, corners
+    driver, driven, centre_distance
         As for `run_wear`.
     load_per_width : float
         N/mm.
     members : sequence of WearMember
     times : (m,) float
         k N at which depths are wanted, mm²/N, rising from 0; linear between updates.
+    positions_per_pitch, corners
+        As for `run_wear`.
 
     Returns
     -------
@@ -274,6 +276,11 @@ def run_wear_ensemble(
         mm, on the driver.
     depth : (members, m, n) float
         Of the driver's flank, mm.
+
+    Raises
+    ------
+    InputError
+        If the gears are helical.
     """
     # Members stand side by side as slices of one face that know nothing of each other.
     for gear in (driver, driven):

@@ -64,19 +64,24 @@ class RecommendedBacklash:
     assembly: tuple[float, float] | None
 
 
-def recommended_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> RecommendedBacklash:
+def recommended_backlash(pinion: Gear, centre_distance: float) -> RecommendedBacklash:
     """Recommended backlash of a new pair.
 
     Parameters
     ----------
-    pinion, gear : Gear
-        The pair; its normal module is the pinion's.
+    pinion : Gear
+        Either gear of the pair: its normal module is what is asked for.
     centre_distance : float
         mm.
 
     Returns
     -------
     RecommendedBacklash
+
+    Raises
+    ------
+    InputError
+        If the centre distance is not above 0.
 
     Notes
     -----
@@ -87,8 +92,7 @@ def recommended_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> Re
     --------
     >>> from gearwear.design import GearSpec
     >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
-    >>> gear = Gear.from_spec(GearSpec("gear", 24, 6.35, 15.0))
-    >>> found = recommended_backlash(pinion, gear, 114.3)
+    >>> found = recommended_backlash(pinion, 114.3)
     >>> round(found.least_normal, 4), found.coarse_pitch, [round(mm, 4) for mm in found.assembly]
     (0.2051, None, [0.1778, 0.2794])
     """

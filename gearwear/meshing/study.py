@@ -155,7 +155,7 @@ class PairStudy(Card):
     @property
     def recommended(self) -> RecommendedBacklash:
         """Backlash that standards and handbooks recommend for the pair."""
-        return recommended_backlash(self.pinion, self.gear, self.exact.centre_distance)
+        return recommended_backlash(self.pinion, self.exact.centre_distance)
 
     @property
     def centre_distances(self) -> CentreDistances:

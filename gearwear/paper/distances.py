@@ -34,7 +34,7 @@ def distances() -> tuple[Row, ...]:
         return math.degrees(working_pressure_angle(pinion, gear, distance))
 
     radii = operating_pitch_radii(pinion, gear, on_operating)
-    advised = recommended_backlash(pinion, gear, C)
+    advised = recommended_backlash(pinion, C)
     least, classical = advised.least_normal, advised.assembly or (math.nan, math.nan)
     linear_take_up = changed(
         "eq. 7 with the loss in t1, the allowance as wanted backlash",

@@ -43,6 +43,8 @@ def take_sample(points: Floats, normals: Floats | None, seed: int = 0) -> Sample
         The scan, mm.
     normals : (n, 3) float or None
         Normals of the file, if it has any.
+    seed : int
+        Of the choice of points.
     """
     from scipy.spatial import cKDTree
 

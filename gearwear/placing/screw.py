@@ -67,6 +67,8 @@ def find_screw(sample: Sample, seed: int = 0) -> Screw | None:
     ----------
     sample : Sample
         Thinned scan with normals of unknown sign.
+    seed : int
+        Of the choice of points.
 
     Returns
     -------

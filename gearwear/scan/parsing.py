@@ -77,6 +77,11 @@ def check_count(what: str, promised: int, least_bytes: int, held_bytes: int) -> 
         Fewest bytes that one of them takes.
     held_bytes : int
         Bytes that are there.
+
+    Raises
+    ------
+    InputError
+        If they do not hold that many.
     """
     if promised * least_bytes > held_bytes:
         held = held_bytes // least_bytes

@@ -27,6 +27,11 @@ def fan(flat: Ints, start: Ints, corners: Ints) -> Ints:
     (m, 3) int64
         Vertex indices, polygons of one size together.
 
+    Raises
+    ------
+    InputError
+        If a polygon lists more corners than stand in `flat`, or its triangles take more memory than may be used.
+
     Examples
     --------
     >>> fan(np.array([7, 8, 9, 4]), np.array([0]), np.array([4]))

@@ -374,7 +374,7 @@ def _deepest_pit(
 
 
 def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], shares: Floats) -> tuple[float, Floats, float]:
-    """Volume, weights and variance by what is hidden on a sheet of a few cells, `own` of each: what was not seen is as what was, or as far off as that
+    """Volume, weights and variance by what is hidden on a sheet of a few cells, `shares` of each: what was not seen is as what was, or as far off as that
     scatters."""
     region = np.zeros((1, *sheets.count.shape))
     region[(0, *at)] = shares
@@ -388,7 +388,7 @@ def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], shares
 
 
 def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, shares: Floats, noise: float, least: float) -> tuple[Floats, float]:
-    """What the shares `own` of the cells of a side come to, mm³, on each side without wear on which more than the share `least` of them is seen; and
+    """What `shares` of the cells of a side come to, mm³, on each side without wear on which more than the share `least` of them is seen; and
     the variance of that by the noise of the points, mm⁶."""
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
     if sound.sum() >= FEWEST_PLACEBOS:

@@ -201,12 +201,14 @@ def cycles_left(
 
     Parameters
     ----------
-    fits, cycles_run, radius, confidence
+    fits, cycles_run
         As for `forecast_wear`.
     limit : float
         mm of `quantity`; there is no default.
     quantity : {"depth", "thickness", "backlash"}
         What the limit is for.
+    radius, confidence
+        As for `forecast_wear`.
 
     Returns
     -------

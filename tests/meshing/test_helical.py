@@ -241,8 +241,8 @@ def test_where_neighbours_carry_there_is_nothing_to_take_up():
 
 
 def test_recommended_backlash_goes_by_the_normal_module():
-    pinion, gear = pair()
-    assert recommended_backlash(pinion, gear, 66.0).least_normal == pytest.approx(2 / 3 * (0.06 + 0.033 + 0.075))
+    pinion, _ = pair()
+    assert recommended_backlash(pinion, 66.0).least_normal == pytest.approx(2 / 3 * (0.06 + 0.033 + 0.075))
 
 
 def test_two_right_hands_do_not_mesh():

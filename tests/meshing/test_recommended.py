@@ -10,13 +10,12 @@ from gearwear.meshing.recommended import recommended_backlash
 
 
 def found(pitch, inches):
-    pinion, gear = (Gear.from_spec(GearSpec(name, 24, 25.4 / pitch, 20.0)) for name in ("pinion", "gear"))
-    return recommended_backlash(pinion, gear, 25.4 * inches)
+    return recommended_backlash(Gear.from_spec(GearSpec("pinion", 24, 25.4 / pitch, 20.0)), 25.4 * inches)
 
 
-def test_the_papers_pair(pinion, wheel):
+def test_the_papers_pair(pinion):
     """No entry for diametral pitch 4 at 4.5 in; the middle of the classical range is the paper's 0.009 in."""
-    there = recommended_backlash(pinion, wheel, 114.3)
+    there = recommended_backlash(pinion, 114.3)
 
     assert there.least_normal == pytest.approx(0.2051, abs=5e-5)
     assert there.coarse_pitch is None
@@ -58,6 +57,6 @@ def test_a_pitch_between_the_lines_has_no_entry():
     assert found(3.5, 10).assembly is None
 
 
-def test_a_distance_that_cannot_be(pinion, wheel):
+def test_a_distance_that_cannot_be(pinion):
     with pytest.raises(InputError, match="must be above 0"):
-        recommended_backlash(pinion, wheel, math.nan)
+        recommended_backlash(pinion, math.nan)

@@ -332,12 +332,27 @@ def _rim(
 
     Parameters
     ----------
+    part : str
+        The gear's table, for what is said.
+    table : dict
+        What stands in it.
+    key : str
+        Of the diameter, mm.
     module : float
         Normal module, mm.
     ratio : function
         Addendum or dedendum of a radius, both in modules.
     legal : (float, float)
         Between what it must lie.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        If the diameter is no number, or the ratio lies outside `legal`.
     """
     diameter, (low, high) = finite_number(part, table, key), legal
     value, of_inches = (ratio(0.5 * length / module) for length in (diameter, MM_PER_INCH * diameter))
