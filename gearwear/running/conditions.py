@@ -71,6 +71,9 @@ class Runs:
     material : Material
     longest : float
         k N up to which is run, mm²/N.
+    kept : dict of Conditions to (MOMENTS, slices, n) float
+        Depth on all places of the map by the runs that were made, mm: `of` adds to it. A copy with other depths on the map may share it, one
+        with another pair must not.
     """
 
     map: WearMap
