@@ -186,7 +186,7 @@ def meshing_changes(
         The same on the tooth sides.
     contact : ContactResult
         Of the worn gear, with the variants that `RunningGear.put_back` gives.
-    made : ContactResult or None
+    made : LinearResult or None
         Of the gear as it was made.
     centre_distance : float
         mm.

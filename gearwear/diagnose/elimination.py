@@ -24,7 +24,7 @@ class Stood:
 
     Parameters
     ----------
-    model : tuple of Candidate
+    model : Model
         The effects that may be named.
     evidence : tuple of Evidence
         One per effect.
@@ -51,7 +51,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
     ----------
     fit, problem : Fit, Problem
         As the search left them.
-    model : tuple of Candidate
+    model : Model
         The effects it chose.
     noise : float
         Scatter of points, mm.

@@ -268,7 +268,7 @@ def account(
     ----------
     fit, problem : Fit, Problem
         The final fit and its search problem.
-    model : tuple of Candidate
+    model : Model
         The accepted effects.
     evidence : list of Evidence
         One per effect.

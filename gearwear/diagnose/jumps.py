@@ -26,7 +26,7 @@ def jump_deviations(fit: Fit, model: Model, index: int, unit: float, context: Co
     Parameters
     ----------
     fit : Fit
-    model : tuple of Candidate
+    model : Model
     index : int
         Which of them.
     unit : float

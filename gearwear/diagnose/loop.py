@@ -58,7 +58,7 @@ class Searched:
         Cells that a fit may use.
     fit, problem : Fit, Problem
         As the search left them.
-    model : tuple of Candidate
+    model : Model
     """
 
     sound: Bools

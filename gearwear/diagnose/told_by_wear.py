@@ -25,11 +25,11 @@ def told_by_wear(fit: Fit, problem: Problem, model: Model) -> Model:
     fit : Fit
         Without the flanks of these sides.
     problem : Problem
-    model : tuple of Candidate
+    model : Model
 
     Returns
     -------
-    tuple of Candidate
+    Model
         The same where nothing gains more than chance.
     """
     worn = problem.context.worn

@@ -268,7 +268,7 @@ def worn_flanks(fit: Fit, model: Model, sound: Bools, noise: float) -> Bools:
     ----------
     fit : Fit
         As a search with all flanks left it.
-    model : tuple of Candidate
+    model : Model
         What that search chose.
     sound : (m,) bool
         Cells that a fit may use.
@@ -278,7 +278,7 @@ def worn_flanks(fit: Fit, model: Model, sound: Bools, noise: float) -> Bools:
     Returns
     -------
     (teeth, 2) bool
-        None where the levels are explained as well without, by effects of the catalogue or by waves round the gear.
+        None of them where the levels are explained as well without, by effects of the catalogue or by waves round the gear.
     """
     found = np.zeros((fit.cells.grid.gear.teeth, 2), dtype=np.bool_)
     levels = _levels(fit, model, sound, noise)

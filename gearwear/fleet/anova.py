@@ -84,7 +84,7 @@ class GaugeVariance:
         Whether it was taken for repeatability.
     repeatability : Component
         Equipment variation, EV.
-    operator, interaction : Component
+    operator, interaction : Component or None
         None where they cannot be seen: with one operator, the interaction also where it was pooled.
     reproducibility : Component or None
         Appraiser variation, AV: operators and interaction.

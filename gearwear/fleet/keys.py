@@ -59,8 +59,8 @@ class Digests:
 
     Parameters
     ----------
-    known : mapping
-        Of earlier runs: path to (size, time of change in ns, digest).
+    known : mapping or None
+        Of earlier runs: path to (size, time of change in ns, digest); None: there were none.
     """
 
     def __init__(self, known: Mapping[str, tuple[int, int, str]] | None = None) -> None:

@@ -31,8 +31,10 @@ class FlankPositions:
         Its mean lines stand in where a thin scan hardly saw a circle.
     common : CommonForm or None
         Form common to a side's flanks; None of a dense scan.
-    shared, own : float or None
-        Errors of the traces' bins, as `PreparedScan` gives them.
+    shared : (teeth, 2, n, m) float or None
+        Errors of the traces' bins that the registration adds, each of its m causes by itself, mm; None where the pose is taken as known.
+    own : (teeth, 2, n) float or None
+        What levelling a thin scan adds to them, a flank's together, mm; None of a dense scan.
     """
 
     scan: PreparedScan

@@ -64,8 +64,8 @@ class SectionThickness(Card):
         Arc of the gear as it was made, mm: what a loss is measured from. The nominal one unless `against` says otherwise.
     pooled : int
         Neighbouring sections whose points each value is from; 1 unless the scan is thin.
-    pooled_on : (teeth,) int
-        The same on each tooth: more where it was seen less well than most.
+    pooled_on : (teeth,) int or None
+        The same on each tooth: more where it was seen less well than most; None: `pooled` on all.
     texture, texture_step : float
         Variance of the texture's part of an arc, mm², and its correlation from one section to the next.
     common_std : float

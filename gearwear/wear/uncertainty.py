@@ -206,8 +206,10 @@ def edge_covariance(sheets: SideMaps, torn: Floats, slope: Floats, weights: Floa
     Parameters
     ----------
     sheets : SideMaps
-    torn, slope : float
-        From `torn_beyond`.
+    torn : (teeth, 2, rows, columns) float
+        From `torn_beyond`, mm².
+    slope : (2, teeth, 2, rows, columns) float
+        From `torn_beyond`, mm a cell.
     weights : SideWeights, or (k, teeth, 2, rows, columns) float
         What each cell's deviation takes from the volume of each region, mm².
 
