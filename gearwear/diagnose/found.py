@@ -309,8 +309,16 @@ def account(
         known += sizes(candidate, i, amplitudes[part], spread_and_form, places[i][: part.stop - part.start], problem.context)
         found.append(
             FoundEffect(
-                candidate, amplitudes[part], parameters, alternatives(problem, model, i), evidence[i],
-                steps[i][0], steps[i + 1][0], steps[i][1], steps[i + 1][1], spread_and_form[: len(candidate.columns), : len(candidate.columns)],
+                candidate=candidate,
+                amplitudes=amplitudes[part],
+                parameters=parameters,
+                alternatives=alternatives(problem, model, i),
+                evidence=evidence[i],
+                rms_before=steps[i][0],
+                rms_after=steps[i + 1][0],
+                held_out_before=steps[i][1],
+                held_out_after=steps[i + 1][1],
+                covariance=spread_and_form[: len(candidate.columns), : len(candidate.columns)],
             )
         )  # fmt: skip
     motion = np.zeros(6)
@@ -327,12 +335,28 @@ def account(
     hidden, made = fit.hidden(model, noise), _made_on(worn_sides, fit, [form_of_all(patterns, len(fit.target)), *off])
     start, end = steps[len(levels)], steps[-1]
     return Loop(
-        named,
-        levels,
-        motion, start[0], end[0], start[1], end[1], noise, fit.residual(model[: len(levels)]), fit.residual(model),
-        fit.use, fit.covariance, worn_sides, problem.context, len(problem.dictionary.candidates), patterns,
-        fit.level_std(model, hidden), hidden, made, (), correlations(known, joint),
-    )  # fmt: skip
+        effects=named,
+        form=levels,
+        motion=motion,
+        rms_before=start[0],
+        rms_after=end[0],
+        held_out_before=start[1],
+        held_out_after=end[1],
+        noise=noise,
+        residual_before=fit.residual(model[: len(levels)]),
+        residual_after=fit.residual(model),
+        use=fit.use,
+        covariance=fit.covariance,
+        worn_sides=worn_sides,
+        context=problem.context,
+        tried=len(problem.dictionary.candidates),
+        patterns=patterns,
+        level_std=fit.level_std(model, hidden),
+        hidden=hidden,
+        made=made,
+        others=(),
+        correlations=correlations(known, joint),
+    )
 
 
 def form_of_all(patterns: tuple[Pattern, ...], cells: int) -> Floats:

@@ -123,9 +123,18 @@ def judge(
     allowed = candidate.effect.allowed(own, candidate.shape, problem.context)
     accepted = p_value < rules().significance_of_names and holds and contribution > least and allowed
     return Evidence(
-        wald / q, (q, freedom), number, p_value, left_out.gain, left_out.gain_error, left_out.share, left_out.share_error, contribution,
-        _size(problem, candidate, own), accepted,
-    )  # fmt: skip
+        statistic=wald / q,
+        degrees=(q, freedom),
+        effective_number=number,
+        p_value=p_value,
+        held_out_gain=left_out.gain,
+        held_out_error=left_out.gain_error,
+        shown=left_out.share,
+        shown_error=left_out.share_error,
+        contribution=contribution,
+        size=_size(problem, candidate, own),
+        accepted=accepted,
+    )
 
 
 @dataclass(frozen=True, slots=True)

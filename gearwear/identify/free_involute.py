@@ -153,9 +153,20 @@ def fit_involute(
     if twist is not None:
         spread = _twist_std(points[used] - state[:2], flat[used], side, deviation, state, pitch)
     return FreeInvolute(
-        state[:2], state[5:7], float(state[2]), float(state[3]), float(state[4]), covariance, float(np.mean(radius)), roll, scatter, worn,
-        float(state[7]), spread, 0.0 if worn is None else median_scale(deviation[side == worn])[1],
-    )  # fmt: skip
+        centre=state[:2],
+        lean=state[5:7],
+        phase=float(state[2]),
+        base_radius=float(state[3]),
+        base_half_angle=float(state[4]),
+        covariance=covariance,
+        middle=float(np.mean(radius)),
+        roll=roll,
+        scatter=scatter,
+        worn_side=worn,
+        twist=float(state[7]),
+        twist_std=spread,
+        worn_scatter=0.0 if worn is None else median_scale(deviation[side == worn])[1],
+    )
 
 
 def _twist_std(offset: Floats, height: Floats, side: Floats, deviation: Floats, state: Floats, pitch: float) -> float:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from gearwear.design.involute import involute_function
@@ -319,9 +319,12 @@ def propose(
                 values, residuals, cost = with_round_shift(known, standard.mm, free, scale_doubt, fitted)
             cost += rare
             if key not in proposals or cost < proposals[key].cost:
+                shift, thinning, shortening, coat, scale = values
                 proposals[key] = Proposal(
-                    teeth, standard, angle, depth, *values, residuals, cost, shift_std(known, standard.mm), beta, internal
-                )
+                    teeth=teeth, module=standard, pressure_angle=angle, depth=depth, profile_shift=shift, thinning=thinning,
+                    shortening=shortening, coat=coat, scale=scale, residuals=residuals, cost=cost,
+                    shift_std=shift_std(known, standard.mm), helix_angle=beta, internal=internal,
+                )  # fmt: skip
     if not proposals:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
     ranked = sorted(proposals.values(), key=lambda proposal: proposal.cost)[:most]
@@ -347,9 +350,9 @@ def spec_of(proposal: Proposal, face_width: float, body_diameter: float = 0.0, n
     depth = proposal.depth
     if proposal.internal:
         return GearSpec(
-            name, proposal.teeth, proposal.module.mm, face_width, proposal.pressure_angle, proposal.profile_shift,
-            round(depth.addendum - proposal.shortening, 6), depth.dedendum, thinning=proposal.thinning,
-            helix_angle=proposal.helix_angle, internal=True, rim_diameter=body_diameter,
+            name, proposal.teeth, proposal.module.mm, face_width, normal_pressure_angle=proposal.pressure_angle,
+            profile_shift=proposal.profile_shift, addendum=round(depth.addendum - proposal.shortening, 6), dedendum=depth.dedendum,
+            thinning=proposal.thinning, helix_angle=proposal.helix_angle, internal=True, rim_diameter=body_diameter,
         )  # fmt: skip
     slope = (1.0 - math.sin(proposal.pressure_angle)) / math.cos(proposal.pressure_angle)
     half_space = 0.25 * math.pi + 0.5 * proposal.thinning / proposal.module.mm
@@ -359,13 +362,13 @@ def spec_of(proposal: Proposal, face_width: float, body_diameter: float = 0.0, n
         proposal.teeth,
         proposal.module.mm,
         face_width,
-        proposal.pressure_angle,
-        proposal.profile_shift,
-        round(depth.addendum - proposal.shortening, 6),
-        depth.dedendum,
-        max(0.0, min(0.3, math.floor(100.0 * room) / 100.0)),
-        proposal.thinning,
-        body_diameter,
+        normal_pressure_angle=proposal.pressure_angle,
+        profile_shift=proposal.profile_shift,
+        addendum=round(depth.addendum - proposal.shortening, 6),
+        dedendum=depth.dedendum,
+        rack_tip_radius=max(0.0, min(0.3, math.floor(100.0 * room) / 100.0)),
+        thinning=proposal.thinning,
+        bore_diameter=body_diameter,
         helix_angle=proposal.helix_angle,
         gap=gap,
     )
@@ -476,9 +479,10 @@ def _other_shift(
             held = fit(rows, m, free, scale_doubt, shift)
             cost = math.inf if held is None else held[2] + rarity + depth.rarity + (shift / SHIFT_WIDTH) ** 2
             if held is not None and cost < least:
-                values = (shift, *held[0][1:])
-                nearest, least = Proposal(
-                    best.teeth, best.module, angle, depth, *values, held[1], max(cost, best.cost), best.shift_std, beta, best.internal
+                _, thinning, shortening, coat, scale = held[0]
+                nearest, least = replace(
+                    best, depth=depth, profile_shift=shift, thinning=thinning, shortening=shortening, coat=coat, scale=scale,
+                    residuals=held[1], cost=max(cost, best.cost),
                 ), cost  # fmt: skip
     return nearest
 

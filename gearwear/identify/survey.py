@@ -275,9 +275,23 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     pose = Pose(spin @ plane.turn, spin @ -np.array([*flank.centre, low]))
     return Survey(
-        pose, plane.count.teeth, *((root, tip) if inward else (tip, root)), flank, width, faces, bore,
-        TipCircle(np.zeros(2), tip, oval, direction - phase), plane.count.share, tuple(notes), tuple(flanks), inward, scatter, gap, rim,
-    )  # fmt: skip
+        pose=pose,
+        teeth=plane.count.teeth,
+        tip_radius=root if inward else tip,
+        root_radius=tip if inward else root,
+        flank=flank,
+        face_width=width,
+        faces=faces,
+        bore_diameter=bore,
+        circle=TipCircle(np.zeros(2), tip, oval, direction - phase),
+        share=plane.count.share,
+        notes=tuple(notes),
+        halves=tuple(flanks),
+        internal=inward,
+        root_scatter=scatter,
+        gap=gap,
+        rim_diameter=rim,
+    )
 
 
 def _staggered(halves: Sequence[Teeth], ends: Sequence[FaceEnds]) -> list[str]:

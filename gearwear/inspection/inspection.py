@@ -269,15 +269,15 @@ def _dimensions(
         at_pins, _ = positions.at(profile_place(gear, pins.roll))
         pin_lengths, balls = measured_over_pins(at_pins, gear, pins), runout(at_pins, gear, pins)
     dimensions = Dimensions(
-        thickness,
-        gauge,
-        span_lengths,
-        pins,
-        pin_lengths,
-        chordal(gear),
-        measured_chordal(thickness, gear),
-        constant_chord(gear),
-        measured_constant_chord(thickness, gear),
+        thickness=thickness,
+        span=gauge,
+        span_lengths=span_lengths,
+        pins=pins,
+        pin_lengths=pin_lengths,
+        chord=chordal(gear),
+        chord_thickness=measured_chordal(thickness, gear),
+        constant_chord=constant_chord(gear),
+        constant_chord_thickness=measured_constant_chord(thickness, gear),
     )
     return dimensions, balls
 

@@ -433,15 +433,15 @@ def _traces(
     shape = (samples.gear.teeth, 2, n)
     centre: Floats = np.asarray(limits[0] + (np.arange(n) + 0.5) * width, dtype=np.float64)
     return Traces(
-        along,
-        band,
-        width,
-        centre,
-        station.reshape(shape),
-        mean.reshape(shape),
-        error.reshape(shape),
-        count.reshape(shape),
-        np.where(seen, np.bincount(cell, across[inside], number) / safe, np.nan).reshape(shape),
+        along=along,
+        band=band,
+        step=width,
+        centre=centre,
+        station=station.reshape(shape),
+        deviation=mean.reshape(shape),
+        standard_error=error.reshape(shape),
+        count=count.reshape(shape),
+        across=np.where(seen, np.bincount(cell, across[inside], number) / safe, np.nan).reshape(shape),
     )
 
 

@@ -382,18 +382,18 @@ def _known(
     if not converged:
         unsettled.insert(0, f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
     return Registration(
-        pose,
-        converged,
-        covariance,
-        observed,
-        datum,
-        offset,
-        bands,
-        noise(cells),
-        fitting,
-        tuple(unsettled),
-        tuple(unseen),
-        without,
+        pose=pose,
+        converged=converged,
+        covariance=covariance,
+        observed=observed,
+        datum=datum,
+        offset=offset,
+        bands=bands,
+        noise=noise(cells),
+        fitting=fitting,
+        unsettled=tuple(unsettled),
+        unseen=tuple(unseen),
+        without=without,
     )
 
 

@@ -373,7 +373,17 @@ class _Flank:
         area = float((self.whole * area_of).sum())
         mean = float((depth * area_of).sum()) / area
         return WearRegion(
-            self.tooth, self.side, self.volume, std, deepest, mean, area, centroid, patches, len(self.standing) == 1, deep_std
+            tooth=self.tooth,
+            side=self.side,
+            volume=self.volume,
+            volume_std=std,
+            max_depth=deepest,
+            mean_depth=mean,
+            area=area,
+            centroid=centroid,
+            patches=patches,
+            planar=len(self.standing) == 1,
+            max_depth_std=deep_std,
         )
 
     def _deepest(self, noise: float, loop: Loop | None, level: float) -> tuple[float, float]:

@@ -267,11 +267,10 @@ class SectionThickness(Card):
     def _teeth(self) -> tuple[ToothSummary, ...]:
         least, at_z, _ = self._least_arc
         lost, _, _ = self._most_lost
-        result = []
+        nan, result = math.nan, []
         for tooth, arc in enumerate(self.arc):
             if not np.isfinite(least.value[tooth]):
-                nothing = [math.nan] * 7
-                result.append(ToothSummary(tooth, self.nominal, *nothing))
+                result.append(ToothSummary(tooth, self.nominal, mean=nan, least=nan, greatest_loss=nan, at_z=nan, std=nan))
                 continue
             std, mean = float(np.median(self.std[tooth][np.isfinite(arc)])), float(np.nanmean(arc))
             # Places that are looked at side by side have another mean than all sections.
@@ -279,10 +278,17 @@ class SectionThickness(Card):
             most_lost = max(-float(lost.value[tooth]), float(np.nanmean(self.as_made[tooth] - arc)))
             result.append(
                 ToothSummary(
-                    tooth, self.nominal, mean, thinnest, most_lost,
-                    float(at_z[tooth]), std, float(least.std[tooth]), float(lost.std[tooth]),
+                    tooth=tooth,
+                    nominal=self.nominal,
+                    mean=mean,
+                    least=thinnest,
+                    greatest_loss=most_lost,
+                    at_z=float(at_z[tooth]),
+                    std=std,
+                    least_std=float(least.std[tooth]),
+                    loss_std=float(lost.std[tooth]),
                 )
-            )  # fmt: skip
+            )
         return tuple(result)
 
     @cached_property
@@ -348,9 +354,22 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
     common = turn * float(np.hypot(*ridge_std))
     return SectionThickness(
-        r, heights, nominal, arc, flank, count, std, noise, made, pooled, common_std=common, scatter=scatter, turn=turn, pooled_on=on,
+        radius=r,
+        z=heights,
+        nominal=nominal,
+        arc=arc,
+        flank=flank,
+        count=count,
+        std=std,
+        noise=noise,
+        as_made=made,
+        pooled=pooled,
+        common_std=common,
+        scatter=scatter,
+        turn=turn,
+        pooled_on=on,
         drawn=made,
-    )  # fmt: skip
+    )
 
 
 def _parts(gear: Gear, heights: Floats) -> list[tuple[slice, Segment]]:
