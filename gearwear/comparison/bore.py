@@ -231,8 +231,9 @@ def filled_in(measured: MeasuredGear, settings: Settings) -> tuple[SurfacePoints
         If the design does not have the datum, or the scan shows too little of it.
     """
     axis = settings.axis or measured.design.datum.axis
-    flanks, covariance = measured.flanks, measured.placed.registration.covariance
-    if axis != "teeth":
+    if axis == "teeth":
+        flanks, covariance = measured.flanks, measured.placed.registration.covariance
+    else:
         flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
     return flanks, replace(
         settings,

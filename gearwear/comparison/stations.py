@@ -148,9 +148,11 @@ def compare(
     covariance = None if measured.loop is None else measured.loop.covariance
     surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
     worn = worn_profiles(ProfileNodes.of(grid), without_added_metal(surface.depth, wear.side_maps.area))
-    left_in = effects if taken_out else None
+    left_in, quick = effects if taken_out else None, partial(find, limits=False, errors=False)
     beyond: list[Callable[[], Any]] = [  # what needs neither the contact nor one another
-        partial(_lost, measured, unworn, left_in, as_made, scatter, partial(find, limits=False, errors=False), wear, wear_before),
+        tuple
+        if left_in is None
+        else partial(wear_changes, measured, left_in, as_made, scatter, quick, wear, wear_before, unworn),
         partial(_thick, measured, unworn, left_in, wear),
         partial(_inspected, measured, inspection),
         partial(_solid, measured, worn, wear),
@@ -345,20 +347,6 @@ def _undecided(gears: Sequence[MeasuredGear]) -> tuple[tuple[float, float], ...]
     """Worn volume and its standard deviation with other sides worn throughout, mm³."""
     wears = [find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone) for gear in gears]
     return tuple((wear.volume, wear.volume_std) for wear in wears)
-
-
-def _lost(
-    measured: MeasuredGear,
-    unworn: MeasuredGear | None,
-    effects: Sequence[PutBack] | None,
-    as_made: Cells,
-    scatter: float,
-    find: Callable[[Cells], Wear],
-    wear: Wear,
-    before: Wear,
-) -> tuple[Change, ...]:
-    """What the effects change of the wear; nothing was taken out where they are None."""
-    return () if effects is None else wear_changes(measured, effects, as_made, scatter, find, wear, before, unworn)
 
 
 def _thick(

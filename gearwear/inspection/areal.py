@@ -25,6 +25,9 @@ FEWEST_CELLS, MOST_CELLS = (4, 6), (32, 48)
 LEAST_SEEN = 0.7
 """Share of the cells of a flank that must hold a point; with less the flank has no areal parameters."""
 
+SURFACE_TERMS = 6
+"""Coefficients of a surface of second order."""
+
 LOCAL_POINTS = 4
 """Points of a cell that may be the deepest or the highest one."""
 
@@ -130,7 +133,7 @@ def evaluate_areal(
     inside = samples.inside(*area)
     shape = _cells(inside)
     cells = _CellMeans.of(inside, profile, helix, shape)
-    centre = _terms(*(index.ravel() for index in np.meshgrid(_middles(shape[1]), _middles(shape[0]))))
+    centre = surface_terms(*(index.ravel() for index in np.meshgrid(_middles(shape[1]), _middles(shape[0]))))
     sides = np.broadcast_to(np.array(Side, dtype=np.float64), (gear.teeth, 2))
     size = np.array([2.0, 2.0, -1.0, -1.0, 4.0])  # of the coefficients, in mm of each parameter
     values, spread = np.full((2, gear.teeth, 2, 5), np.nan)
@@ -205,8 +208,8 @@ def _most(values: Floats) -> Floats:
     return np.asarray(np.maximum(values.max(axis=-1), 0.0))
 
 
-def _terms(u: Floats, v: Floats) -> Floats:
-    """Terms of a surface of second order at places (n,) from −1 to 1, (n, 6)."""
+def surface_terms(u: Floats, v: Floats) -> Floats:
+    """Terms of a surface of second order at places (n,) from −1 to 1, (n, `SURFACE_TERMS`)."""
     return np.column_stack([np.ones_like(u), u, v, u * u, v * v, u * v])
 
 
@@ -229,14 +232,14 @@ class _CellMeans:
 
     @classmethod
     def of(cls, samples: FlankSamples, profile: Range, helix: Range, shape: tuple[int, int]) -> _CellMeans:
-        u, v = (2.0 * (x - r.middle) / r.length for x, r in ((samples.roll, profile), (samples.z, helix)))
+        u, v = profile.from_middle(samples.roll), helix.from_middle(samples.z)
         j, i = (np.clip((0.5 * (x + 1.0) * n).astype(np.int64), 0, n - 1) for x, n in ((u, shape[1]), (v, shape[0])))
         cell = (samples.flank * shape[0] + i) * shape[1] + j
         number = 2 * samples.gear.teeth * shape[0] * shape[1]
         count = np.bincount(cell, minlength=number)
         means = [
             np.where(count, np.bincount(cell, values, number) / np.maximum(count, 1), np.nan)
-            for values in (samples.deviation, *_terms(u, v).T)
+            for values in (samples.deviation, *surface_terms(u, v).T)
         ]
         flanks = (samples.gear.teeth, 2, shape[0] * shape[1])
         return cls(means[0].reshape(flanks), np.stack(means[1:], axis=-1).reshape(*flanks, -1), count.reshape(flanks))

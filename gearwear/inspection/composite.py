@@ -186,13 +186,13 @@ def _along(evaluation: Evaluation, where: Floats, standard: bool = False) -> Flo
 
 def _flanks(profile: Evaluation, areal: Areal, roll: Floats) -> tuple[Floats, Floats]:
     """The flanks for contact, (teeth, 2, n_z, n) mm, and the standard uncertainty of what they do across the face, (teeth, 2, n_z) mm."""
-    u, v = (2.0 * (x - where.middle) / where.length for x, where in ((roll, areal.profile_range), (areal.z, areal.helix_range)))
+    u, v = areal.profile_range.from_middle(roll), areal.helix_range.from_middle(areal.z)
     flanks = np.empty((*areal.cells.shape[:3], len(roll)))
     standard = np.empty(areal.cells.shape[:3])
     along = _along(profile, roll)
     for flank in np.ndindex(*areal.cells.shape[:2]):
         twist, error = 0.25 * float(areal.flanks.twist.value[flank]), areal.cell_standard[flank]
-        centre = 2.0 * (areal.roll - areal.profile_range.middle) / areal.profile_range.length
+        centre = areal.profile_range.from_middle(areal.roll)
         off = areal.cells[flank] - np.interp(areal.roll, roll, along[flank]) - twist * centre * v[:, None]
         seen = np.isfinite(off)
         count = np.maximum(seen.sum(axis=1), 1)

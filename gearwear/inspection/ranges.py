@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 from gearwear.inspection.tolerances import Edition
@@ -54,6 +57,10 @@ class Range:
     @property
     def middle(self) -> float:
         return 0.5 * (self.start + self.end)
+
+    def from_middle(self, places: Floats) -> Floats:
+        """How far places lie from the middle: −1 at the start, 1 at the end."""
+        return np.asarray(2.0 * (places - self.middle) / self.length, dtype=np.float64)
 
     @property
     def bin_width(self) -> float:

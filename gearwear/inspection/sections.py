@@ -182,7 +182,7 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
     flank, delta = samples.flank[inside], samples.deviation[inside]
     cell, number = flank * n + place, 2 * teeth * n
     half = 0.5 * (traces.band[1] - traces.band[0])
-    x, t = (across[inside] - at) / half, 2.0 * (along[inside] - where.middle) / where.length
+    x, t = (across[inside] - at) / half, where.from_middle(along[inside])
     columns = np.column_stack([x, x * t, x * x])
     count = np.maximum(np.bincount(cell, minlength=number), 1)
     mean = np.column_stack([np.bincount(cell, column, number) / count for column in columns.T])

@@ -15,6 +15,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.side import Side
+from gearwear.inspection.areal import SURFACE_TERMS, surface_terms
 from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.traces import FlankSamples
@@ -150,12 +151,11 @@ class _Flanks:
         if len(points):
             points = points.take(np.argsort(points.flank, kind="stable"))
         border = np.searchsorted(points.flank, np.arange(2 * points.gear.teeth + 1))
-        least = 2 * len(_form(points, profile, helix)[:0].T)
-        enough = np.diff(border) > least
+        enough = np.diff(border) > 2 * SURFACE_TERMS
         points = points.take(np.repeat(enough, np.diff(border)))
         border = np.concatenate([[0], np.cumsum(np.diff(border)[enough])])
         pieces = tuple(slice(a, b) for a, b in pairwise(border))
-        form = _form(points, profile, helix)
+        form = surface_terms(profile.from_middle(points.roll), helix.from_middle(points.z))
         return cls(points, pieces, tuple(np.linalg.qr(form[mine])[0] for mine in pieces))
 
     def free(self, columns: Floats) -> Floats:
@@ -164,18 +164,13 @@ class _Flanks:
         return np.concatenate([np.zeros((0, columns.shape[1])), *parts])
 
 
-def _form(points: FlankSamples, profile: Range, helix: Range) -> Floats:
-    u, v = 2.0 * (points.roll - profile.middle) / profile.length, 2.0 * (points.z - helix.middle) / helix.length
-    return np.column_stack([np.ones_like(u), u, v, u * u, v * v, u * v])
-
-
 def _side(
     points: FlankSamples, profile: Range, helix: Range, side: Side, orders: Ints, noise: float
 ) -> tuple[Floats, float, tuple[Wave, ...]]:
     """Amplitudes of all orders, the limit, and what stands out."""
     flanks = _Flanks.of(points, profile, helix)
+    delta = flanks.free(flanks.points.deviation[:, None])[:, 0]
     for _ in range(PASSES):
-        delta = flanks.free(flanks.points.deviation[:, None])[:, 0]
         spread = scale_about(delta) if len(delta) else 0.0
         near = np.abs(delta) <= CLIPPED * max(spread, 1e-9)
         if near.all():

@@ -316,14 +316,14 @@ def refine(
     cells = bin_points(located, grid, clip=stray_limit(located))
     datum = choose_datum(cells, noise(cells), ignore)
     for pass_ in range(MOST_PASSES):  # each pass relocates every point: what the one before linearised is then exact
-        cells, motion, covariance, offset, step = fit_cells(cells, datum, free)
-        pose = pose.then(small_motion(motion))
+        fit = fit_cells(cells, datum, free)
+        pose = pose.then(small_motion(fit.motion))
         located = locate(pose.apply(points), gear, bands)
         cells = bin_points(located, grid, clip=stray_limit(located))
         datum = choose_datum(cells, noise(cells), ignore)
-        if pass_ > 0 and step < REPEATED_TO_MODULES * gear.transverse_module:
+        if pass_ > 0 and fit.step < REPEATED_TO_MODULES * gear.transverse_module:
             break
-    registration = _known(pose, cells, datum, free, covariance, step, offset, bands, fitting)
+    registration = _known(pose, cells, datum, free, fit, bands, fitting)
     return registration, located
 
 
@@ -343,33 +343,23 @@ def refit(registration: Registration, cells: Cells, ignore: frozenset[int] = fro
     """
     free = _free(False)
     datum = choose_datum(cells, noise(cells), ignore)
-    _, motion, covariance, offset, step = fit_cells(cells, datum, free)
-    back = small_motion(motion)
+    fit = fit_cells(cells, datum, free)
+    back = small_motion(fit.motion)
     pose = registration.pose.then(back)
-    cells = cells.with_deviation(cells.points.deviation + cells.motion @ motion)
-    refitted = _known(pose, cells, datum, free, covariance, step, offset, registration.bands, registration.fitting)
+    cells = cells.with_deviation(cells.points.deviation + cells.motion @ fit.motion)
+    refitted = _known(pose, cells, datum, free, fit, registration.bands, registration.fitting)
     return refitted, cells, back
 
 
-def _known(
-    pose: Pose,
-    cells: Cells,
-    datum: Datum,
-    free: Bools,
-    covariance: Floats,
-    step: float,
-    offset: float,
-    bands: Bands,
-    fitting: float,
-) -> Registration:
+def _known(pose: Pose, cells: Cells, datum: Datum, free: Bools, fit: CellFit, bands: Bands, fitting: float) -> Registration:
     """A pose with how well it is known, and what a reader must know of it."""
     planar, gear = not free[2], cells.grid.gear
-    observed = np.diag(covariance) > 0.0
+    observed = np.diag(fit.covariance) > 0.0
     # Whether a doubtful side is worn the scan does not tell, so how far the pose hangs on it is not known either. Asked only of bends that noise
     # could not make, a scan too coarse to show the wear of a side would know its pose better than a fine one.
     without = tuple((side, _motion_without(cells, datum, side, free)) for side in datum.doubtful)
     farthest = max((motion for _, motion in without), key=lambda motion: abs(motion[5]), default=np.zeros(6))
-    covariance = covariance + np.outer(farthest, farthest)
+    covariance = fit.covariance + np.outer(farthest, farthest)
     unsettled, unseen = list[str](), list[str]()
     if fitting < 0.8:
         unsettled.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
@@ -378,16 +368,16 @@ def _known(
         if has_screw(gear):
             height += "; along helical teeth height and turn go together, and the turn is stated for this height"
         unseen.append(height)
-    converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
+    converged = bool(fit.step < MAX_LAST_STEP_MODULES * gear.transverse_module)
     if not converged:
-        unsettled.insert(0, f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
+        unsettled.insert(0, f"the registration did not settle: the last step was {1e3 * fit.step:.2f} µm")
     return Registration(
         pose=pose,
         converged=converged,
         covariance=covariance,
         observed=observed,
         datum=datum,
-        offset=offset,
+        offset=fit.offset,
         bands=bands,
         noise=noise(cells),
         fitting=fitting,
@@ -403,7 +393,7 @@ def _motion_without(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floa
     its = flank & (cells.points.side == side)
     if not its.any() or its.sum() == flank.sum():
         return np.zeros(6)
-    return fit_cells(cells, replace(datum, mask=datum.mask & ~its), free)[1]
+    return fit_cells(cells, replace(datum, mask=datum.mask & ~its), free).motion
 
 
 def _centred(located: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
@@ -474,13 +464,12 @@ def _inside_outline(located: SurfacePoints, end: int, gear: Gear) -> bool:
     return inside >= max(LEAST_ON_FACE, len(foot) // 5)
 
 
-def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, Floats, float, float]:
-    """Robust fit of a small motion to cell means on the datum surfaces.
+@dataclass(frozen=True, slots=True)
+class CellFit:
+    """A small motion that lays cells on the datum surfaces.
 
-    Returns
-    -------
-    cells : Cells
-        As given.
+    Parameters
+    ----------
     motion : (6,) float
         To be applied to the points: mm and rad.
     covariance : (6, 6) float
@@ -489,6 +478,21 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
         Common offset of the datum, mm.
     step : float
         Size of the motion at the tip circle, mm.
+    """
+
+    motion: Floats
+    covariance: Floats
+    offset: float
+    step: float
+
+
+def fit_cells(cells: Cells, datum: Datum, free: Bools) -> CellFit:
+    """Robust fit of a small motion to cell means on the datum surfaces.
+
+    Raises
+    ------
+    InputError
+        If too few cells hold enough points.
     """
     usual = float(np.median(cells.count[cells.seen])) if cells.seen.any() else 0.0
     part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * usual)))
@@ -528,4 +532,4 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     covariance[np.ix_(free, free)] = sandwich[:moving, :moving]
     radius = cells.grid.gear.tip_radius
     step = float(np.linalg.norm(motion[:3]) + radius * np.linalg.norm(motion[3:]))
-    return cells, motion, covariance, float(solution[moving]), step
+    return CellFit(motion, covariance, float(solution[moving]), step)

@@ -67,7 +67,7 @@ class CellMeans:
         count, deviation = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation)
         texture = 0.0 if loop is None else loop.covariance.texture
         variance = noise**2 / np.maximum(count, 1.0) + texture
-        strays = _strays(sheets, filled, cells, noise)
+        strays = _strays(filled, cells, noise)
         held = (count > 0) & ~strays
         for half in where:
             # A cell of one point counts, but where the others are many.
@@ -104,7 +104,7 @@ class CommonSurface:
         return None if surface is None else cls(surface, share)
 
 
-def _strays(sheets: SideMaps, filled: Floats, cells: Cells, noise: float) -> Bools:
+def _strays(filled: Floats, cells: Cells, noise: float) -> Bools:
     """Cells that a surface must not bend to, (teeth, 2, rows, columns): of one or two points, or of a few that do not agree, farther off the cells
     round them than these are from each other. Of so few nobody knows which are strays."""
     count, deviation, scatter = (cells.grid.sides(values) for values in (cells.count, cells.points.deviation, cells.scatter))
