@@ -32,19 +32,24 @@ if TYPE_CHECKING:
     from gearwear.design.gear import Gear as Gear
     from gearwear.design.load import LoadSpec as LoadSpec
     from gearwear.design.pair import Design as Design
+    from gearwear.design.profiles import ToothProfiles as ToothProfiles
+    from gearwear.design.profiles import nominal_profiles as nominal_profiles
     from gearwear.design.side import Side as Side
     from gearwear.design.spec import GearSpec as GearSpec
     from gearwear.design.surface import locate as locate
     from gearwear.errors import InputError as InputError
+    from gearwear.inspection.settings import Settings as Settings
     from gearwear.loaded.study import study_load as study_load
     from gearwear.meshing.contact import mesh_contact as mesh_contact
     from gearwear.meshing.exact import exact_meshing as exact_meshing
     from gearwear.meshing.shafts import shaft_movement as shaft_movement
     from gearwear.meshing.study import study_meshing as study_meshing
     from gearwear.report import figures as figures
+    from gearwear.wear_law.archard import LoadSharing as LoadSharing
     from gearwear.wear_law.fit import fit_wear_law as fit_wear_law
     from gearwear.wear_law.forecast import cycles_left as cycles_left
     from gearwear.wear_law.forecast import forecast_wear as forecast_wear
+    from gearwear.wear_law.study import Ahead as Ahead
 
 __version__ = "0.17.0"
 
@@ -54,6 +59,8 @@ _HOME = {
     "mesh_contact": "meshing.contact", "LoadSpec": "design.load", "study_load": "loaded.study", "exact_meshing": "meshing.exact",
     "fit_wear_law": "wear_law.fit", "forecast_wear": "wear_law.forecast", "cycles_left": "wear_law.forecast",
     "shaft_movement": "meshing.shafts", "study_meshing": "meshing.study", "figures": "report",
+    "ToothProfiles": "design.profiles", "nominal_profiles": "design.profiles", "Settings": "inspection.settings", "LoadSharing": "wear_law.archard",
+    "Ahead": "wear_law.study",
     "Side": "design.side", "as_scan": "api", "as_dict": "api", "as_columns": "api", "report_arrays": "api", "compare": "api", "example": "api", "find_wear": "api", "inspect": "api",
     "propose_design": "api", "read_scan": "api", "write": "api",
 }  # fmt: skip

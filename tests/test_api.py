@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import subprocess
 import sys
 from dataclasses import FrozenInstanceError, replace
@@ -20,7 +21,6 @@ from scipy.spatial.transform import Rotation
 
 import gearwear as gw
 from gearwear.design.card import Card, few, measured
-from gearwear.inspection.settings import Settings
 from gearwear.meshing.study import flanks_as_drawn
 from tests.synthetic import Effect, Patch, Recipe, make_scan
 
@@ -92,6 +92,15 @@ class TestNames:
             own = import_module(f"{home}.{name}") if name == "figures" else getattr(import_module(home), name)
             assert getattr(gw, name) is own, name
 
+    def test_what_functions_take_can_be_made_with_what_is_there(self):
+        plain = "None|Path|Name|Sequence|ArrayLike|Floats|Literal|Cycle|Quantity|BacklashKind|Progress"
+        results = "Scan|MeasuredGear|Inspection|Results|Measured|PairStudy|LoadedStudy|WearStudy|WearFit"
+        inner = "CellGrid|Bands"  # how a scan is cut up, and which surface a point may belong to
+        for function in filter(inspect.isfunction, (getattr(gw, name) for name in gw.__all__)):
+            for parameter in inspect.signature(function).parameters.values():
+                taken = re.findall(rf"\b(?!(?:{plain}|{results}|{inner})\b)[A-Z]\w+", parameter.annotation)
+                assert set(taken) <= set(gw.__all__), f"{function.__name__}: {parameter}"
+
     def test_the_page_lists_every_function(self):
         page = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
         for name in gw.__all__:
@@ -128,7 +137,7 @@ class TestStages:
         design = scanned()[0]
         datum = replace(design.datum, axis="ends", temperature=23.0, temperature_std=5.0)
         gear = replace(results().measured, design=replace(design, datum=datum))
-        plain, chosen = gw.inspect(gear), gw.inspect(gear, Settings(required_class=9))
+        plain, chosen = gw.inspect(gear), gw.inspect(gear, gw.Settings(required_class=9))
         assert (plain.settings.axis, chosen.settings.axis, chosen.settings.required_class) == ("ends", "ends", 9)
         assert chosen.settings.scale_std == gear.design.scale_std > 0.0
         for name in ("single", "index", "cumulative"):
@@ -140,13 +149,13 @@ class TestStages:
     def test_settings_that_are_stated_are_kept(self):
         design = scanned()[0]
         gear = replace(results().measured, design=replace(design, datum=replace(design.datum, axis="ends")))
-        about_teeth = gw.inspect(gear, Settings(axis="teeth", noise=0.05, scale_std=0.0, pose_covariance=np.zeros((6, 6))))
+        about_teeth = gw.inspect(gear, gw.Settings(axis="teeth", noise=0.05, scale_std=0.0, pose_covariance=np.zeros((6, 6))))
         assert about_teeth.settings.axis == "teeth"
         assert about_teeth.settings.noise == 0.05  # of a spur gear along the normal as across it
         assert about_teeth.pitch.index.shared is not None and not about_teeth.pitch.index.shared.any()
         np.testing.assert_array_equal(about_teeth.pitch.index.value, gw.inspect(results().measured).pitch.index.value)
         with pytest.raises(gw.InputError, match="an axis from the bore needs bore_diameter"):
-            gw.inspect(gear, Settings(axis="bore"))
+            gw.inspect(gear, gw.Settings(axis="bore"))
 
     def test_a_half_that_is_none_is_refused(self):
         with pytest.raises(gw.InputError, match="half = 'foo': lower or upper would be right"):
