@@ -39,7 +39,7 @@ def allowing(gigabytes: float) -> Iterator[None]:
         If it is no amount of memory.
     """
     if not 0.0 < gigabytes < math.inf:
-        raise InputError(f"--memory {gigabytes:g}: gigabytes above 0, such as {DEFAULT:g}, would be right")
+        raise InputError(f"memory = {gigabytes:g} GB: above 0, such as {DEFAULT:g}, would be right")
     token = _allowed.set(gigabytes * GB)
     try:
         yield
@@ -73,7 +73,7 @@ def check_memory(points: int = 0, triangles: int = 0, other: int = 0) -> None:
     >>> check_memory(points=100_000_000)
     Traceback (most recent call last):
     ...
-    gearwear.errors.NotEnoughMemory: its 100,000,000 points would need 40 GB of memory and 4 GB are allowed: a thinner scan, or --memory 40, would be right
+    gearwear.errors.NotEnoughMemory: its 100,000,000 points would need 40 GB of memory and 4 GB are allowed: a thinner scan, or memory = 40 GB, would be right
     """
     needed = points * POINT + triangles * TRIANGLE + other
     if needed <= allowed():
@@ -81,5 +81,5 @@ def check_memory(points: int = 0, triangles: int = 0, other: int = 0) -> None:
     counts = [f"{count:,} {what}" for what, count in (("points", points), ("triangles", triangles)) if count]
     amount = math.ceil(10.0 * min(needed / GB, 1e12)) / 10.0
     raise NotEnoughMemory(
-        f"its {' and '.join(counts) or 'contents'} would need {amount:g} GB of memory and {allowed() / GB:g} GB are allowed: a thinner scan, or --memory {math.ceil(amount):d}, would be right"
+        f"its {' and '.join(counts) or 'contents'} would need {amount:g} GB of memory and {allowed() / GB:g} GB are allowed: a thinner scan, or memory = {math.ceil(amount):d} GB, would be right"
     )

@@ -145,14 +145,14 @@ def _heights(text: str | None, design: Design, part: str | None) -> list[float] 
 
 def _also(arguments: Namespace) -> frozenset[str]:
     """What else to write."""
-    from gearwear.report.files.extras import EXTRAS
+    from gearwear.report.files.extras import EXTRAS, NO_PYARROW
 
     asked = [name.strip() for name in arguments.write.split(",")] if arguments.write else []
     for name in asked:
         if name not in EXTRAS:
             raise InputError(f"--write {name}: one of {', '.join(EXTRAS)} would be right, or several with commas between")
     if "parquet" in asked and find_spec("pyarrow") is None:  # said before the work, not after it
-        raise InputError("--write parquet needs the package pyarrow: pip install pyarrow, or leave parquet out")
+        raise InputError(NO_PYARROW)
     return frozenset(asked)
 
 

@@ -14,13 +14,13 @@ from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.refusal import check_gear
 from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.types import Scan
-from gearwear.scan.units import check_size, extents, other_unit, outer_diameter
+from gearwear.scan.units import READ_WITH, check_size, extents, other_unit, outer_diameter
 
 
 def check_part(design: Design, part: str | None) -> None:
     """Refuse a part that the design has not."""
     if part is not None and part not in design.gears:
-        raise InputError(f"--part {part}: the design has only {', '.join(design.gears)}")
+        raise InputError(f"part = {part}: the design has only {', '.join(design.gears)}")
 
 
 def by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
@@ -49,7 +49,7 @@ def placed_as(design: Design, scans: Sequence[Scan], parts: Sequence[str], plana
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])
     where = "" if reason.startswith(files) else f"{files}: "
     line = f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else "")
-    line += "" if "--units " in reason else other_unit(scans[0], design.gears[parts[0]])
+    line += "" if READ_WITH in reason else other_unit(scans[0], design.gears[parts[0]])
     if isinstance(refused[0], NotThisGear):  # with its points, so that the command can say what they look like
         raise NotThisGear(refused[0].points, refused[0].planar, line)
     raise InputError(line)

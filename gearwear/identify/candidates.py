@@ -187,7 +187,7 @@ def find_candidates(
     if helix is not None and len(seen.halves) > 1:  # either half may be called the one at z = 0: as the scan lies
         helix = replace(helix, angle=math.copysign(helix.angle, seen.base_helix[0]))
     if teeth is not None and teeth != seen.teeth:
-        raise InputError(f"--teeth {teeth}: the scan shows {seen.teeth} teeth")
+        raise InputError(f"teeth = {teeth}: the scan shows {seen.teeth} teeth")
     gauges = _gauges(seen)
     candidates = []
     doubt = max(SCALE, 0.5 * seen.oval)
@@ -206,7 +206,7 @@ def find_candidates(
         candidates.append(CandidateGear(proposal, gear, None, math.nan, ()))
     if not candidates:
         raise InputError(
-            "no gear that can be cut has the dimensions of the scan; --teeth and two diameters as numbers may tell why"
+            "no gear that can be cut has the dimensions of the scan; the number of teeth and two diameters, stated without it, may tell why"
         )
     pick = np.random.default_rng(0).choice(len(points), min(FITTED, len(points)), replace=False)
     thin, thin_normals = points[pick], None if normals is None else normals[pick]
@@ -365,7 +365,9 @@ def _root_scatter(located: SurfacePoints, offset: float) -> float:
 def _ranked(fitted: Sequence[CandidateGear], points: Floats) -> tuple[CandidateGear, ...]:
     scatters = [candidate.scatter for candidate in fitted if math.isfinite(candidate.scatter)]
     if not scatters:
-        raise InputError("a gear is seen, but the scan fits none of the proposed ones; --module or --pressure-angle may help")
+        raise InputError(
+            "a gear is seen, but the scan fits none of the proposed ones; a stated module or pressure angle may help"
+        )
     least = min(scatters)
 
     def rank(candidate: CandidateGear) -> float:

@@ -385,8 +385,8 @@ def _notes_of_both(design: Design, measured: Sequence[ToothProfiles], mate_tooth
     ways = math.gcd(pinion.teeth, gear.teeth)
     if mate_tooth is None and ways > 1:
         notes.append(
-            f"tooth 1 of the pinion is taken to meet tooth 1 of the gear; these gears can be put together in {ways} ways, and which one it was is"
-            " for --mate-tooth to say"
+            f"tooth 1 of the pinion is taken to meet tooth 1 of the gear; these gears can be put together in {ways} ways, and which one it was"
+            " is told by a mate tooth that is stated"
         )
     each = [_loss_by_pinion_side(profiles) for profiles in measured]
     clear = ONE_SIDED * max(float(lost.max()) for lost in each)

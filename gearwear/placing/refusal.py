@@ -145,7 +145,7 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
             planar,
             f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth{helix_words(gear)} and tip diameter "
             f"{2 * gear.tip_radius:.2f} mm{beside}; "
-            f"check the design, --part and --units; gearwear design SCAN proposes a design",
+            f"check the design, part and units; gearwear design SCAN proposes a design",
         )
     if not planar:
         _check_kind(placed, gear, fitting)
@@ -227,7 +227,7 @@ def _half_off(placed: PlacedScan, gear: Gear) -> bool:
 
 
 def _not_this(reason: str) -> str:
-    return f"the scan is not of this gear: {reason}; check the design, --part and --units"
+    return f"the scan is not of this gear: {reason}; check the design, part and units"
 
 
 def _seen_helix(gear: Gear, more: float) -> str:

@@ -428,7 +428,7 @@ def _check_fit(located: SurfacePoints, points: Floats, gear: Gear, planar: bool)
             points,
             planar,
             f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth{helix_words(gear)} and tip "
-            f"diameter {2 * gear.tip_radius:.2f} mm; check the design, --part and --units",
+            f"diameter {2 * gear.tip_radius:.2f} mm; check the design, part and units",
         )
     return share * placed
 

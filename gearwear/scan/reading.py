@@ -74,7 +74,7 @@ def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm", stream: b
     if not paths:
         raise InputError("no scan is given: at least one file would be right")
     if len(paths) > 1 and stream:
-        raise InputError(f"{len(paths)} views of one gear are not streamed: one scan, or leaving --stream out, would be right")
+        raise InputError(f"{len(paths)} views of one gear are not streamed: one scan, or all read as a whole, would be right")
     if len(paths) == 1:
         return [read_one(paths[0], units, stream)]
     scans = [replace(scan, view=scan.view + np.int8(i)) for i, scan in enumerate(_all(paths, units))]

@@ -70,7 +70,7 @@ def check_held(paths: Sequence[Path], wanted: bool | None, what: str) -> None:
     """Refuse `what` of a scan that will be streamed."""
     if len(paths) == 1 and _pieces_of(paths[0], wanted) is not None:
         raise InputError(
-            f"{paths[0]}: {what} is not offered for a streamed scan: --write parquet, or a scan of fewer points, would be right"
+            f"{paths[0]}: {what} is not offered for a streamed scan: parquet, or a scan of fewer points, would be right"
         )
 
 
@@ -143,7 +143,7 @@ def _surveyed(path: Path, pieces: Pieces, units: str, scale: float) -> Scan:
     held = Contents(np.concatenate([np.empty((0, 3)), *sample]))
     thinned, kind = clean(held)
     if kind == "section":
-        raise InputError("is a planar section, which is not streamed: reading it as a whole, without --stream, would be right")
+        raise InputError("is a planar section, which is not streamed: reading it as a whole would be right")
     with path.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     return Scan(

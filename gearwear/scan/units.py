@@ -17,6 +17,8 @@ SMALL = 0.1
 LARGE = 6.0
 """Longest side, in a gear's, beyond which it is no table with a gear on it."""
 OFFERED = ("mm", "cm", "m", "um", "in")
+READ_WITH = "read with units"
+"""How another unit is proposed."""
 
 
 def factor(units: str) -> float:
@@ -109,4 +111,4 @@ def other_unit(scan: Scan, gear: Gear) -> str:
 
 
 def _would_be(unit: str, share: float) -> str:
-    return f"read with --units {unit} it would be {share:.2f} of the gear"
+    return f"{READ_WITH} = {unit} it would be {share:.2f} of the gear"

@@ -108,9 +108,9 @@ SCANS = [
     ("same.xyz", "1 of its 3,000 points"),
     ("line.xyz", "not of this gear"),
     ("plane.xyz", "does not fit the design"),
-    ("inch.ply", "--units in"),
-    ("metre.ply", "--units m "),
-    ("micrometre.ply", "--units um"),
+    ("inch.ply", "units = in"),
+    ("metre.ply", "units = m "),
+    ("micrometre.ply", "units = um"),
     ("wheel.ply", "does not fit the design: "),
     ("thirteen.ply", "12 teeth"),
     ("module6.ply", "12 teeth and tip diameter 88.90 mm"),
@@ -229,7 +229,7 @@ class TestOutput:
     @pytest.mark.parametrize("line", COMMANDS)
     def test_a_file_in_its_place(self, place, monkeypatch, line):
         monkeypatch.chdir(place)
-        refused(run(*line.split(), "--out", "file"), "--out file: is a file; a folder is needed")
+        refused(run(*line.split(), "--out", "file"), "file: is a file; a folder is needed")
         refused(run(*line.split(), "--out", "file/below"), "cannot be written to")
         assert (place / "file").read_bytes() == b""
 
@@ -237,7 +237,7 @@ class TestOutput:
     @pytest.mark.parametrize("line", ["meshing", "models one.toml"])
     def test_a_folder_that_cannot_be_made(self, place, monkeypatch, line):
         monkeypatch.chdir(place)
-        refused(run(*line.split(), "--out", "/proc/nowhere"), "--out /proc/nowhere: cannot be written to")
+        refused(run(*line.split(), "--out", "/proc/nowhere"), "/proc/nowhere: cannot be written to")
 
     @pytest.mark.parametrize("line", COMMANDS)
     def test_no_right_to_write_is_known_before_the_work(self, place, tmp_path, monkeypatch, line):

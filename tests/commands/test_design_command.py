@@ -116,8 +116,8 @@ def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
         (["--teeth", "12", "--tip-diameter", "88.9", "--bore", "80"], "no gear of these dimensions can be cut: .*bore_diameter"),
         (["nowhere.ply"], "nowhere.ply: no such file"),
         (["nowhere.ply", "--tip-diameter", "3"], "--tip-diameter beside a scan"),
-        ([str(EXAMPLE / "scan.ply.gz"), "--teeth", "13"], "scan.ply.gz: --teeth 13: the scan shows 12 teeth"),
-        (["--teeth", "12", "--tip-diameter", "88.9", "--out", str(EXAMPLE)], "--out .*cannot be written"),
+        ([str(EXAMPLE / "scan.ply.gz"), "--teeth", "13"], "scan.ply.gz: teeth = 13: the scan shows 12 teeth"),
+        (["--teeth", "12", "--tip-diameter", "88.9", "--out", str(EXAMPLE)], "cannot be written"),
     ],
 )
 def test_what_is_wrong_is_said_in_one_line(capsys, arguments, what):

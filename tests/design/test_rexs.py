@@ -176,7 +176,7 @@ def test_what_a_design_file_has_not_is_refused_by_name(kind, attributes, message
     [
         (replace(SPEC, thinning=0.05), "thinning = 0.05"),
         (replace(SPEC, left=FlankModification(helix_slope=0.01)), "helix_slope = 0.01 mm: REXS does not say its sign"),
-        (GearSpec("gear", 60, 2.0, 20.0, internal=True), "external gears only; leave --rexs out"),
+        (GearSpec("gear", 60, 2.0, 20.0, internal=True), "external gears only; leave it out"),
     ],
 )
 def test_what_rexs_has_no_place_for_is_refused(spec, message):

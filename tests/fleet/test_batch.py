@@ -192,7 +192,7 @@ def test_the_command_in_this_process(fleet, tmp_path):
 @pytest.mark.parametrize(("arguments", "said"), [
     (["--workers", "2", "--scheduler", "tcp://x:1"], "--workers and --scheduler both say who works"),
     (["--workers", "-1"], "--workers -1: a number from 0 on"),
-    (["--memory", "0"], "--memory 0"),
+    (["--memory", "0"], "memory = 0 GB"),
 ])  # fmt: skip
 def test_wrong_options(tmp_path, arguments, said):
     found = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", *arguments)

@@ -100,7 +100,7 @@ def test_a_full_disk_is_told_as_such(store, monkeypatch, write):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr("gearwear.fleet.store.write_data", full)
-    with pytest.raises(InputError, match=r"--out .*: cannot be written to \(No space left"):
+    with pytest.raises(InputError, match=r": cannot be written to \(No space left"):
         write(store)
 
 

@@ -137,7 +137,7 @@ def test_what_is_known_is_held_to():
     fixed = find_candidates(points, module=3.1, face_width=11.5, bore=7.5).ranked
     assert {one.proposal.module.mm for one in fixed} == {3.1}
     assert (fixed[0].gear.face_width, fixed[0].gear.spec.bore_diameter) == (11.5, 7.5)
-    with pytest.raises(InputError, match="--teeth 12: the scan shows 11 teeth"):
+    with pytest.raises(InputError, match="teeth = 12: the scan shows 11 teeth"):
         find_candidates(points, teeth=12)
     with pytest.raises(InputError, match="bore 27 mm: below the root diameter of the scan"):
         find_candidates(points, bore=27.0)

@@ -38,7 +38,7 @@ def test_the_right_unit_is_named_and_no_other(pinion: Gear, part: str, said: str
     if said == true:
         check_size(scan, pinion)
         return
-    with pytest.raises(InputError, match=rf"worn\.ply: measures .* tip diameter 88\.9 mm.*--units {true} "):
+    with pytest.raises(InputError, match=rf"worn\.ply: measures .* tip diameter 88\.9 mm.*units = {true} "):
         check_size(scan, pinion)
 
 
@@ -60,7 +60,7 @@ def test_a_wide_pinion_is_judged_by_its_length(pinion: Gear) -> None:
     wide = Gear.from_spec(replace(pinion.spec, face_width=200.0))
     stretched = FLAT * [1.0, 1.0, 200.0 / 15.0]
     check_size(scan_of(stretched), wide)
-    with pytest.raises(InputError, match="--units in "):
+    with pytest.raises(InputError, match="units = in "):
         check_size(scan_of(stretched / 25.4), wide)
 
 
@@ -101,7 +101,7 @@ def test_the_limits_are_those_that_are_told(pinion: Gear, monkeypatch, said, kin
         check_size(scan, pinion)
         return
     would = share[0] * UNITS[named] / UNITS[said]
-    with pytest.raises(InputError, match=rf"--units {named} it would be {would:.2f} of the gear"):
+    with pytest.raises(InputError, match=rf"units = {named} it would be {would:.2f} of the gear"):
         check_size(scan, pinion)
 
 
@@ -110,4 +110,4 @@ def test_a_piece_of_the_gear_in_another_unit_is_refused_with_that_unit(pinion: G
     """A tooth or two are as small as any part: no size refuses them, and what then refuses them says the unit."""
     piece = FLAT[np.abs(np.arctan2(FLAT[:, 1], FLAT[:, 0])) < 0.5]
     assert other_unit(scan_of(piece), pinion) == ""
-    assert f"--units {true} " in other_unit(scan_of(piece / UNITS[true]), pinion)
+    assert f"units = {true} " in other_unit(scan_of(piece / UNITS[true]), pinion)

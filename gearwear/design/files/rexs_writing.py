@@ -90,7 +90,7 @@ def _gear(writer: _Writer, gear: Gear) -> str:
         ("end_rounding", spec.end_rounding),
     ):
         if value and key == "internal":
-            raise InputError(f"[{spec.name}] internal: a REXS model is written for external gears only; leave --rexs out")
+            raise InputError(f"[{spec.name}] internal: a REXS model is written for external gears only; leave it out")
         if value:
             raise InputError(
                 f"[{spec.name}] {key} = {value}: a REXS model has no place for it here; leaving it out would be right"

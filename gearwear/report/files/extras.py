@@ -20,6 +20,8 @@ from gearwear.report.files.tables import write_points_npz, write_points_ply
 from gearwear.report.files.writing import write_csv
 from gearwear.wear.solid import on_outline
 
+NO_PYARROW = "parquet needs the package pyarrow: pip install pyarrow, or leave parquet out"
+
 
 def write_ply(results: Results, folder: Path) -> list[str]:
     """``points.ply``: the deviation of every point, for CloudCompare; not of a streamed scan."""
@@ -46,7 +48,7 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
     try:
         pa, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
     except ImportError:
-        raise InputError("--write parquet needs the package pyarrow: pip install pyarrow, or leave parquet out") from None
+        raise InputError(NO_PYARROW) from None
     about = {
         "gearwear": "design frame: axis on z, tooth 1 on +x; deviation along the outward normal, + is too much material; "
         "corrected: measurement effects taken out",

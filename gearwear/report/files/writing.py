@@ -32,10 +32,10 @@ def check_folder(out: Path) -> None:
     """
     try:
         if out.exists() and not out.is_dir():
-            raise InputError(f"--out {out}: is a file; a folder is needed")
+            raise InputError(f"{out}: is a file; a folder is needed")
         existing = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
         if not existing.is_dir():
-            raise InputError(f"--out {out}: cannot be written to, {existing} is a file; a folder is needed")
+            raise InputError(f"{out}: cannot be written to, {existing} is a file; a folder is needed")
         if not os.access(existing, os.W_OK | os.X_OK):
             raise PermissionError(errno.EACCES, "Permission denied")
     except OSError as error:
@@ -56,9 +56,7 @@ def check_heights(said: str, heights: Sequence[object], width: float) -> None:
 
 def unwritable(out: Path, error: OSError) -> InputError:
     """What to say of a folder that cannot be written to."""
-    return InputError(
-        f"--out {out}: cannot be written to ({error.strerror or error}); free space and the right to write are needed"
-    )
+    return InputError(f"{out}: cannot be written to ({error.strerror or error}); free space and the right to write are needed")
 
 
 @contextmanager
