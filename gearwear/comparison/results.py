@@ -14,10 +14,11 @@ from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.comparison.open_volume import OpenVolume
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.comparison.weighed import WeighedLoss, weighed_loss
-from gearwear.design.card import Card, CardRow, counted, measured
+from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.quantity import counted
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import MEASURED, Kind

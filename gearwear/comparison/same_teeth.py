@@ -17,9 +17,8 @@ from scipy.special import logsumexp
 
 from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MeasuredGear
-from gearwear.design.card import counted
 from gearwear.design.gear import Gear
-from gearwear.design.quantity import listed
+from gearwear.design.quantity import counted, listed
 from gearwear.design.surface import FLANK
 from gearwear.placing.cells import Cells
 from gearwear.placing.pose import Pose, about_z, flip

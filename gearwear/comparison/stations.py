@@ -21,11 +21,10 @@ from gearwear.comparison.open_volume import even_loss
 from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
-from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.quantity import significant
+from gearwear.design.quantity import counted, significant
 from gearwear.design.side import Side, sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FILLET, FLANK, TIP, SurfacePoints, flank_points

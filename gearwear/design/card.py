@@ -56,15 +56,6 @@ def measured(value: float, std: float, unit: str) -> str:
     return with_std(value, std, unit).replace(SPACE, " ") if math.isfinite(value) else "not known"
 
 
-def counted(number: int, singular: str, many: str = "") -> str:
-    """A number and the word for it.
-
-    >>> counted(1, "region"), counted(3, "region")
-    ('1 region', '3 regions')
-    """
-    return f"{number:,} {singular if number == 1 else many or singular + 's'}"
-
-
 def few(rows: Sequence[CardRow], most: int = 10) -> list[CardRow]:
     """The first rows, and how many more there are."""
     left = len(rows) - most

@@ -84,6 +84,16 @@ class Design:
         return next((gear for name, gear in self.gears.items() if name != part), None)
 
 
+def opposite_hands(pinion: Gear, gear: Gear) -> bool:
+    """Whether helix angles are opposite, as those of gears that mesh are; of a ring and its pinion: the same."""
+    return abs(pinion.helix_angle + pinion.orientation * gear.orientation * gear.helix_angle) <= MAX_HELIX_DIFFERENCE
+
+
+def same_base_pitch(pinion: Gear, gear: Gear) -> bool:
+    """Whether teeth are equally far apart along the line of action, to rounding."""
+    return abs(pinion.base_pitch - gear.base_pitch) <= 1e-9 * pinion.base_pitch
+
+
 def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     """Refuse a pair that cannot be mounted; return what is legal but worth knowing.
 
@@ -110,7 +120,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         raise InputError("[pinion] internal = true: the ring of a pair is its [gear]; the two the other way round would be right")
     if g.internal and not p.teeth < g.teeth:
         raise InputError(f"[gear] teeth = {g.teeth}: a ring needs more teeth than the pinion inside it, {p.teeth}")
-    if abs(p.helix_angle + orientation * g.helix_angle) > MAX_HELIX_DIFFERENCE:
+    if not opposite_hands(pinion, gear):
         shown = [f"{math.degrees(spec.helix_angle):g}°" for spec in (p, g)]
         same_hand = f" (both {p.hand} hand)" if p.hand == g.hand else ""
         right = "the same hand and angle inside a ring" if g.internal else "opposite hands of one angle"
@@ -121,7 +131,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         raise InputError(
             f"[gear] gap = {g.gap:g} mm does not mesh with the pinion's {p.gap:g} mm: a double helical gear runs with a double helical gear"
         )
-    if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
+    if not same_base_pitch(pinion, gear):
         raise InputError(
             f"[gear] module {g.normal_module:g} mm and pressure angle {math.degrees(g.normal_pressure_angle):g}° do not mesh with the pinion's {p.normal_module:g} mm and {math.degrees(p.normal_pressure_angle):g}°: base pitches {gear.base_pitch:.6f} and {pinion.base_pitch:.6f} mm must be equal"
         )

@@ -47,6 +47,17 @@ class ToothProfiles:
             self.gear.base_radius * self.gear.base_helix_cosine * (self.gear.half_angles(self.radius, self.z) - self.half_angle)
         )
 
+    def at_heights(self, z: Floats) -> Floats:
+        """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""
+        psi, heights = self.half_angle, self.z
+        if len(heights) == 1:
+            return np.broadcast_to(psi, (*psi.shape[:2], len(z), psi.shape[3]))
+        if np.array_equal(heights, z):
+            return psi
+        low = np.clip(np.searchsorted(heights, z, side="right") - 1, 0, len(heights) - 2)
+        part = np.clip((z - heights[low]) / (heights[low + 1] - heights[low]), 0.0, 1.0)[:, None]
+        return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)
+
     def thickness(self, radius: float) -> Floats:
         """Tooth thickness r (ψ_left + ψ_right) at `radius`, mm of arc; (teeth, n_z)."""
         whole = self.half_angle.sum(axis=1)

@@ -84,12 +84,13 @@ def pretty_unit(unit: str) -> str:
     return UNITS.get(unit, unit)
 
 
-def plural(count: int, singular: str, many: str = "") -> str:
+def counted(number: int, singular: str, many: str = "") -> str:
+    """A number and the word for it.
+
+    >>> counted(1, "flank"), counted(3, "tooth", "teeth"), counted(1200, "region")
+    ('1 flank', '3 teeth', '1,200 regions')
     """
-    >>> plural(1, "flank"), plural(3, "tooth", "teeth")
-    ('1 flank', '3 teeth')
-    """
-    return f"{count} {singular if count == 1 else many or singular + 's'}"
+    return f"{number:,} {singular if number == 1 else many or singular + 's'}"
 
 
 def listed(items: Iterable[str], last: str = "and") -> str:
@@ -103,14 +104,16 @@ def listed(items: Iterable[str], last: str = "and") -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else ""
 
 
-def teeth_words(numbers: Iterable[int]) -> str:
-    """Teeth by their numbers, those that follow each other as a stretch.
+def teeth_words(numbers: Iterable[int], count: int = 0) -> str:
+    """Teeth by their numbers, from 1 on, those that follow each other as a stretch; all of them where the gear has `count`.
 
-    >>> teeth_words([4]), teeth_words([9, 3, 4, 5, 1, 2]), teeth_words([1, 2, 7])
-    ('tooth 4', 'teeth 1 to 5 and 9', 'teeth 1, 2 and 7')
+    >>> teeth_words([4]), teeth_words([9, 3, 4, 5, 1, 2]), teeth_words([1, 2, 7]), teeth_words([1, 2, 3], 3)
+    ('tooth 4', 'teeth 1 to 5 and 9', 'teeth 1, 2 and 7', 'all 3 teeth')
     """
-    stretches: list[list[int]] = []
-    for tooth in sorted(set(numbers)):
+    teeth, stretches = sorted(set(numbers)), list[list[int]]()
+    if len(teeth) == count:
+        return f"all {count} teeth"
+    for tooth in teeth:
         if stretches and stretches[-1][-1] == tooth - 1:
             stretches[-1].append(tooth)
         else:

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.card import Card, CardRow, counted, few, measured
-from gearwear.design.quantity import NORMAL_95, pretty_unit
+from gearwear.design.card import Card, CardRow, few, measured
+from gearwear.design.quantity import NORMAL_95, counted, pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes

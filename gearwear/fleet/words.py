@@ -6,7 +6,7 @@ import math
 import textwrap
 from collections.abc import Sequence
 
-from gearwear.design.quantity import listed, plural, sentence, significant, unbroken
+from gearwear.design.quantity import counted, listed, sentence, significant, unbroken
 from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.gauge import Accord, GaugeStudy, Scatter
 from gearwear.fleet.labels import left_words, rate_words, shown, title_of
@@ -44,7 +44,10 @@ def fleet_words(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
         if number
     ]
     return "; ".join(
-        [f"{plural(len(gears), 'gear')}, {plural(len(fleet.rows), 'scan')}", *([", ".join(not_compared)] if not_compared else [])]
+        [
+            f"{counted(len(gears), 'gear')}, {counted(len(fleet.rows), 'scan')}",
+            *([", ".join(not_compared)] if not_compared else []),
+        ]
     )
 
 
@@ -57,7 +60,7 @@ def verdict_words(gears: Sequence[GearTrend]) -> str:
     count = {state: sum(gear.conformity is state for gear in judged) for state in (*Conformity, None)}
     if judged and count[None] == len(judged):
         wearing = sum(any(trend.significant for trend in gear.trends.values()) for gear in judged)
-        statements = [f"{wearing} of {plural(len(gears), 'gear')} wear significantly", "the designs set no limits", *without]
+        statements = [f"{wearing} of {counted(len(gears), 'gear')} wear significantly", "the designs set no limits", *without]
         return sentence("; ".join(statements))
     words = [
         (count[Conformity.NOT_CONFORMING], "{} beyond a limit"),
@@ -66,7 +69,7 @@ def verdict_words(gears: Sequence[GearTrend]) -> str:
         (count[None], "{} without limits"),
     ]
     kept = ", ".join(phrase.format(number) for number, phrase in words if number)
-    return sentence(f"{plural(len(gears), 'gear')}: {'; '.join(filter(None, [kept, *without]))}")
+    return sentence(f"{counted(len(gears), 'gear')}: {'; '.join(filter(None, [kept, *without]))}")
 
 
 def trend_lines(fleet: StoredFleet, gears: Sequence[GearTrend], width: int = 80) -> list[tuple[str, str]]:
@@ -134,7 +137,7 @@ def gauge_lines(studies: Sequence[GaugeStudy], width: int = 80) -> list[tuple[st
 def study_words(studies: Sequence[GaugeStudy]) -> str:
     """How large the study is, by its largest quantity."""
     study = max(studies, key=lambda study: len(study.parts) * len(study.operators) * study.repeats)
-    return f"{plural(len(study.parts), 'gear')}, {plural(len(study.operators), 'operator')}, {plural(study.repeats, 'repeat')}"
+    return f"{counted(len(study.parts), 'gear')}, {counted(len(study.operators), 'operator')}, {counted(study.repeats, 'repeat')}"
 
 
 def accord_words(studies: Sequence[GaugeStudy]) -> str:
@@ -144,9 +147,9 @@ def accord_words(studies: Sequence[GaugeStudy]) -> str:
     if not judged:
         return "No quantity with a stated ± was repeated."
     if not more:
-        return f"Repeats contradict the stated ± of none of {plural(len(judged), 'quantity', 'quantities')}."
+        return f"Repeats contradict the stated ± of none of {counted(len(judged), 'quantity', 'quantities')}."
     named = ", ".join(more[:3]) + (f" and {len(more) - 3} more" if len(more) > 3 else "")
-    return f"Repeats contradict the stated ± of {len(more)} of {plural(len(judged), 'quantity', 'quantities')}: {named}."
+    return f"Repeats contradict the stated ± of {len(more)} of {counted(len(judged), 'quantity', 'quantities')}: {named}."
 
 
 def gauge_line(study: GaugeStudy) -> str:

@@ -16,7 +16,7 @@ from gearwear.errors import InputError
 from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
 from gearwear.meshing.passes import Cycle, Passes, pitches
 from gearwear.meshing.path import path_of_contact
-from gearwear.meshing.slices import FaceParts, at_heights
+from gearwear.meshing.slices import FaceParts
 
 _PASSES_AT_A_TIME = 12
 """Pitches worked on at a time: what is known then fits in some tens of megabytes."""
@@ -121,8 +121,8 @@ def rigid_advance(
     face = FaceParts.of(gear, mate, slices)
 
     def prepared(first: ToothProfiles, second: ToothProfiles) -> Passes:
-        sliced = replace(first, z=face.z, half_angle=at_heights(first, face.z))
-        mate_sliced = replace(second, z=face.z, half_angle=at_heights(second, face.mate_z))
+        sliced = replace(first, z=face.z, half_angle=first.at_heights(face.z))
+        mate_sliced = replace(second, z=face.z, half_angle=second.at_heights(face.mate_z))
         return Passes.of(sliced, mate_sliced, centre_distance, side, n, start_tooth)
 
     run, others = prepared(driver, driven), [prepared(*pair) for pair in variants]

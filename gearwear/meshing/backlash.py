@@ -19,7 +19,7 @@ from typing import Literal, get_args
 from gearwear.design.gear import Gear
 from gearwear.design.given import check_choice
 from gearwear.design.involute import inverse_involute, involute_function
-from gearwear.design.pair import base_radius_sum
+from gearwear.design.pair import base_radius_sum, opposite_hands, same_base_pitch
 from gearwear.design.rack import bisect
 from gearwear.errors import InputError
 
@@ -231,14 +231,13 @@ def check_mesh(pinion: Gear, gear: Gear) -> None:
     """Refuse gears that no centre distance makes mesh: base pitches differ, or helix angles are not opposite (with a ring: not the same)."""
     if pinion.spec.internal and gear.spec.internal:
         raise InputError("two rings do not mesh; one of them inside the other would be an external gear")
-    if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
+    if not same_base_pitch(pinion, gear):
         raise InputError(f"base pitches {pinion.base_pitch:.6f} and {gear.base_pitch:.6f} mm: gears that mesh have the same")
-    orientation = pinion.orientation * gear.orientation
-    if abs(pinion.helix_angle + orientation * gear.helix_angle) > 1e-9:
+    if not opposite_hands(pinion, gear):
         angles = " and ".join(f"{math.degrees(member.helix_angle):g}°" for member in (pinion, gear))
         right = (
             "external gears that mesh have opposite ones, a right hand and a left hand"
-            if orientation > 0
+            if pinion.orientation == gear.orientation
             else "a ring has that of its pinion"
         )
         raise InputError(f"helix angles {angles}: {right}")

@@ -53,11 +53,11 @@ class Slices:
     def cut(self, driver: ToothProfiles, driven: ToothProfiles) -> tuple[ToothProfiles, ToothProfiles]:
         """Both gears in these slices, z that of the driver; the same profiles where there is nothing to cut."""
         if self.height is None:
-            return driver, replace(driven, z=driver.z, half_angle=at_heights(driven, driver.z))
+            return driver, replace(driven, z=driver.z, half_angle=driven.at_heights(driver.z))
         middle = 0.5 * driver.gear.face_width
         z = self.height + middle
-        mate = at_heights(driven, self.height + 0.5 * driven.gear.face_width)
-        return replace(driver, z=z, half_angle=at_heights(driver, z)), replace(driven, z=z, half_angle=mate)
+        mate = driven.at_heights(self.height + 0.5 * driven.gear.face_width)
+        return replace(driver, z=z, half_angle=driver.at_heights(z)), replace(driven, z=z, half_angle=mate)
 
 
 class FaceParts(NamedTuple):
@@ -84,18 +84,6 @@ class FaceParts(NamedTuple):
         if gear.twist == 0.0:
             return cls(middle, middle, widths, middle / width - 0.5, half)
         return cls(middle + 0.5 * gear.face_width, middle + 0.5 * mate.face_width, widths, middle / width, half)
-
-
-def at_heights(profiles: ToothProfiles, z: Floats) -> Floats:
-    """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""
-    psi, heights = profiles.half_angle, profiles.z
-    if len(heights) == 1:
-        return np.broadcast_to(psi, (*psi.shape[:2], len(z), psi.shape[3]))
-    if np.array_equal(heights, z):
-        return psi
-    low = np.clip(np.searchsorted(heights, z, side="right") - 1, 0, len(heights) - 2)
-    part = np.clip((z - heights[low]) / (heights[low + 1] - heights[low]), 0.0, 1.0)[:, None]
-    return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)
 
 
 def common_face(gear: Gear, mate: Gear) -> list[tuple[float, float]]:

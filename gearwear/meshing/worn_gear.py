@@ -15,10 +15,9 @@ from gearwear.design.files.traces import read_traces
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.quantity import listed, plural
+from gearwear.design.quantity import teeth_words
 from gearwear.design.side import Side
 from gearwear.errors import InputError
-from gearwear.meshing.slices import at_heights
 
 Measured = Path | str | ToothProfiles
 """A gear as it is: the folder that `compare` wrote to, its ``worn_profiles.npz``, traces of a measuring machine as CSV, or profiles."""
@@ -78,7 +77,7 @@ def in_same_slices(pinion: ToothProfiles, gear: ToothProfiles) -> ToothProfiles:
     """The pinion in the sections of whichever of two measured spur gears has more: contact is looked for in the pinion's."""
     if pinion.gear.twist != 0.0 or len(pinion.z) >= len(gear.z):
         return pinion
-    return replace(pinion, z=gear.z, half_angle=at_heights(pinion, gear.z))
+    return replace(pinion, z=gear.z, half_angle=pinion.at_heights(gear.z))
 
 
 def uniform_loss(
@@ -92,9 +91,9 @@ def uniform_loss(
     if not asked or not all(is_tooth(tooth, gear) for tooth in asked):
         which = ", ".join(map(str, asked)) or "that are none"
         raise InputError(f"teeth {which}: the {part} has teeth from 1 to {gear.teeth}, and whole numbers of them would be right")
-    chosen = sorted({int(tooth) - 1 for tooth in asked})
+    chosen = sorted({int(tooth) for tooth in asked})
     half_angle = nominal.half_angle.copy()
-    half_angle[chosen, side.index] -= loss / gear.normal_lever
+    half_angle[np.array(chosen) - 1, side.index] -= loss / gear.normal_lever
     if not (half_angle.sum(axis=1) > 0.0).all():
         land = gear.base_radius * gear.base_helix_cosine * float(nominal.half_angle.sum(axis=1).min())
         raise InputError(
@@ -108,17 +107,6 @@ def uniform_loss(
 def is_tooth(tooth: object, gear: Gear) -> bool:
     """Whether it is the number of a tooth of a gear, counted from 1."""
     return isinstance(tooth, Integral) and not isinstance(tooth, bool) and 1 <= int(tooth) <= gear.teeth
-
-
-def teeth_words(teeth: Sequence[int], count: int) -> str:
-    """Which teeth, 0-based, in few words.
-
-    >>> teeth_words([0, 1, 2], 3), teeth_words([4], 12), teeth_words([0, 2], 12)
-    ('all 3 teeth', 'tooth 5', 'teeth 1 and 3')
-    """
-    if len(teeth) == count:
-        return f"all {plural(count, 'tooth', 'teeth')}"
-    return ("tooth " if len(teeth) == 1 else "teeth ") + listed(str(tooth + 1) for tooth in teeth)
 
 
 def _read(design: Design, wear: Measured) -> tuple[WornGear, ToothProfiles]:

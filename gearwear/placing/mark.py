@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
-from gearwear.design.quantity import plural, with_std
+from gearwear.design.quantity import counted, with_std
 from gearwear.design.spec import DatumMark
 from gearwear.design.twist import wrapped_angle
 from gearwear.errors import InputError
@@ -180,7 +180,7 @@ def _look(points: Floats, ring: MarkRing) -> _Look:
     radius, angle = radius[inside], np.arctan2(points[inside, 1], points[inside, 0])
     if len(angle) < LEAST_POINTS:
         return _Look(
-            len(angle), why_not=f"none is seen: {plural(len(angle), 'point')} {ring.words()}, at least {LEAST_POINTS} are needed"
+            len(angle), why_not=f"none is seen: {counted(len(angle), 'point')} {ring.words()}, at least {LEAST_POINTS} are needed"
         )
     reach = REACH * ring.width
     window = 2.0 * reach / float(np.median(radius))

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.quantity import plural
+from gearwear.design.quantity import counted
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
 from gearwear.scan.contents import Contents
@@ -281,13 +281,13 @@ def _read_block(block: bytes, layout: Layout, first_line: int, last_line: int) -
             raise InputError(f"line {number:,}: {shown!r} are not {layout.width} numbers{cut}")
         if len(values) < layout.width and cut:
             raise InputError(
-                f"line {number:,} has {plural(len(values), 'column')}, line {layout.first_line:,} has {layout.width}{cut}"
+                f"line {number:,} has {counted(len(values), 'column')}, line {layout.first_line:,} has {layout.width}{cut}"
             )
         if _is_count(values):
             raise InputError(f"line {number:,} has 1 column like the count of a further cloud: one cloud per file would be right")
         if len(values) != layout.width:
             raise InputError(
-                f"line {number:,} has {plural(len(values), 'column')}, line {layout.first_line:,} has {layout.width}: as many in every line would be right"
+                f"line {number:,} has {counted(len(values), 'column')}, line {layout.first_line:,} has {layout.width}: as many in every line would be right"
             )
         rows.append(values)
     return np.array(rows, np.float64).reshape(-1, layout.width)[:, layout.columns]

@@ -14,8 +14,8 @@ import numpy as np
 from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.card import Card, CardRow, counted, few, measured
-from gearwear.design.quantity import NORMAL_95
+from gearwear.design.card import Card, CardRow, few, measured
+from gearwear.design.quantity import NORMAL_95, counted
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells

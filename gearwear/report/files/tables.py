@@ -23,24 +23,16 @@ CHANNELS = ("red", "green", "blue")
 
 def section_outlines(profiles: ToothProfiles, heights: Sequence[float]) -> Floats:
     """Outline of the whole gear at some heights (mm), linear between the profiles' own, (heights, n, 2) mm, to be closed."""
-    return outlines(_at_heights(profiles, heights))
-
-
-def _at_heights(profiles: ToothProfiles, heights: Sequence[float]) -> ToothProfiles:
-    """Profiles at some heights, linear between their own."""
     z = np.asarray(heights, dtype=np.float64)
-    upper = np.clip(np.searchsorted(profiles.z, z), 1, len(profiles.z) - 1)
-    below, above = profiles.z[upper - 1], profiles.z[upper]
-    share = np.clip((z - below) / (above - below), 0.0, 1.0)[:, None]
-    half_angle = (1.0 - share) * profiles.half_angle[:, :, upper - 1] + share * profiles.half_angle[:, :, upper]
-    return replace(profiles, z=z, half_angle=half_angle)
+    return outlines(replace(profiles, z=z, half_angle=profiles.at_heights(z)))
 
 
 def write_sections_csv(path: Path, worn: ToothProfiles, heights: Sequence[float]) -> None:
     """Section curves of the nominal and the worn teeth: z, tooth (from 1), flank, radius, and x and y of both, mm."""
     head = ("z_mm", "tooth", "flank", "radius_mm", "nominal_x_mm", "nominal_y_mm", "worn_x_mm", "worn_y_mm", "depth_um")
     gear, r = worn.gear, worn.radius
-    nominal_half, worn_half = (_at_heights(profiles, heights).half_angle for profiles in (nominal_like(worn), worn))
+    z = np.asarray(heights, dtype=np.float64)
+    nominal_half, worn_half = nominal_like(worn).at_heights(z), worn.at_heights(z)
 
     def rows() -> Iterator[tuple[object, ...]]:
         for (i, z), tooth, side in product(enumerate(heights), range(gear.teeth), Side):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 
-from gearwear.design.quantity import MISSING, SPACE, listed, number, plural, pretty_unit, significant, with_std
+from gearwear.design.quantity import MISSING, SPACE, counted, listed, number, pretty_unit, significant, with_std
 from gearwear.diagnose.effects.base import ParameterEstimate
 from gearwear.wear.regions import WearRegion
 
@@ -63,7 +63,7 @@ def which_flanks(regions: Iterable[WearRegion], teeth: int | None = None) -> str
     if len(sides) == 1:
         return f"{'all ' if len(flanks) == teeth else ''}{len(flanks)} {sides.pop()} flanks"
     numbers = {tooth for tooth, _ in flanks}
-    return f"{len(flanks)} flanks of {plural(len(numbers), 'tooth', 'teeth')}"
+    return f"{len(flanks)} flanks of {counted(len(numbers), 'tooth', 'teeth')}"
 
 
 def or_words(alternatives: Iterable[str]) -> str:

@@ -9,15 +9,14 @@ from typing import NamedTuple
 
 from gearwear.comparison.results import Results
 from gearwear.comparison.weighed import WeighedLoss
-from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import (
     NORMAL_95,
     SPACE,
     as_drawn,
+    counted,
     listed,
     number,
-    plural,
     sentence,
     significant,
     teeth_words,
@@ -391,7 +390,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
         key.append(KeyFigure(name, f"{_um(before)}{SPACE}µm", f"no effect was looked for; {own_noise}"))
     elif results.effects:
         value = f"{_um(before)} → {_um(loop.rms_after)}{SPACE}µm"
-        key.append(KeyFigure(name, value, f"{plural(len(results.effects), 'effect')} taken out; {own_noise}"))
+        key.append(KeyFigure(name, value, f"{counted(len(results.effects), 'effect')} taken out; {own_noise}"))
     else:
         key.append(KeyFigure(name, f"{_um(loop.rms_after)}{SPACE}µm", f"no effect is named; {own_noise}"))
     return key

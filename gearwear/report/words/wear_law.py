@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant
+from gearwear.design.quantity import SPACE, counted, listed, number, sentence, significant
 from gearwear.wear.regions import WearRegion
 from gearwear.wear_law.across import across_words
 from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, Band
@@ -50,7 +50,7 @@ def law_words(study: WearStudy) -> str:
     uneven = "" if study.across is None else across_words(study.across)
     if study.best is None:
         return " ".join(map(sentence, filter(None, [f"No wear law was fitted: {sentence(study.why_not)}", uneven])))
-    said = [f"wear law, fitted to the mean of {plural(len(study.teeth), f'{study.side} flank')}: {study.best.words}"]
+    said = [f"wear law, fitted to the mean of {counted(len(study.teeth), f'{study.side} flank')}: {study.best.words}"]
     if study.left_out:
         which, single = listed(str(tooth + 1) for tooth in study.left_out), len(study.left_out) == 1
         said.append(
