@@ -214,12 +214,3 @@ class ContactResult(Card):
     def angular_backlash_driver(self) -> Floats:
         """Play of the driver with the driven gear held, rad, (n,): j_bn / (r_b1 cos β_b)."""
         return self.backlash / self.driver.normal_lever
-
-    @property
-    def angular_backlash_driven(self) -> Floats:
-        """Play of the driven gear with the driver held, rad, (n,): j_bn / (r_b2 cos β_b)."""
-        return self.backlash / self.driven.normal_lever
-
-    def pairs_within(self, tolerance: float) -> Ints:
-        """Number of pairs within `tolerance` (mm) of contact in each position, (n,)."""
-        return np.asarray((self.pair_gap <= tolerance).sum(axis=1), dtype=np.int64)

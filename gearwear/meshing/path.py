@@ -99,12 +99,6 @@ class PathOfContact:
         """L_1 at B and at D of a spur pair. Between them one pair carries alone if 1 ≤ ε_α < 2; see `alone_pinion` for every case."""
         return self.end_pinion - self.base_pitch, self.start_pinion + self.base_pitch
 
-    @property
-    def single_contact_gear(self) -> tuple[float, float]:
-        """L_2 at D and at B: the gear's lowest and highest points of single contact."""
-        pitch = self.orientation * self.base_pitch
-        return self.end_gear - pitch, self.start_gear + pitch
-
     def roll_gear(self, roll_pinion: ArrayLike) -> Floats:
         """L_2 where the pinion is touched at L_1, mm."""
         return np.abs(self.line - np.asarray(roll_pinion, dtype=np.float64))

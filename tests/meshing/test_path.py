@@ -83,18 +83,13 @@ def test_rolls_add_up_to_the_line_and_swapping_mirrors_the_path(teeth, mate_teet
         (path.start_pinion, path.end_gear),
         (path.end_pinion, path.start_gear),
         (path.pitch_pinion, path.pitch_gear),
-        path_single(path, 0),
-        path_single(path, 1),
+        *zip(path.single_contact_pinion, reversed(mirrored.single_contact_pinion), strict=True),
     ):
         assert pinion_roll + gear_roll == pytest.approx(line, abs=tolerance)
     assert path.approach + path.recess == pytest.approx(path.length, abs=tolerance)
     assert mirrored.length == pytest.approx(path.length, abs=tolerance)
     assert (mirrored.start_gear, mirrored.limit_gear) == (pytest.approx(path.start_pinion, abs=tolerance), path.limit_pinion)
     assert first.form_roll <= path.start_pinion < path.end_pinion <= first.tip_roll
-
-
-def path_single(path, i):
-    return path.single_contact_pinion[i], path.single_contact_gear[1 - i]
 
 
 def pairs_in_contact(path, roll):

@@ -103,7 +103,6 @@ def test_standard_sizes_of_a_pair():
     assert (path.start_pinion, path.end_pinion) == pytest.approx((SPUR[1].tip_roll - line, SPUR[0].tip_roll), abs=1e-12)
     assert (path.end_gear, path.start_gear) == pytest.approx((SPUR[1].tip_roll, SPUR[0].tip_roll + line), abs=1e-12)
     assert path.pitch_gear - path.pitch_pinion == pytest.approx(line, rel=1e-14)
-    assert path.single_contact_gear == pytest.approx([roll + line for roll in path.single_contact_pinion[::-1]], rel=1e-12)
     assert path.alone_gear == pytest.approx([roll + line for roll in path.alone_pinion], rel=1e-12)
     assert tip_clearances(*SPUR, 52.0) == pytest.approx((74.5 - 52.0 - 21.8, 70.4 - 52.0 - 17.5), abs=1e-12)
     assert bottoming_centre_distance(*SPUR) == pytest.approx(min(74.5 - 21.8, 70.4 - 17.5), abs=1e-12)
