@@ -224,102 +224,149 @@ def _by_chunks(n: int, work: Callable[[slice], None], workers: int | None) -> No
             list(pool.map(work, chunks))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _InSection:
+    """Points in their own sections: the direction away from the axis, L at their own radius (mm), the tooth next to them, and side and angle (rad)
+    from its centre line; whether they lie towards the tip from the form circle."""
+
+    radius: Floats
+    ex: Floats
+    ey: Floats
+    reach: Floats
+    index: Floats
+    side: Floats
+    within: Floats
+    outer: Bools
+
+    @classmethod
+    def of(cls, gear: Gear, x: Floats, y: Floats, z: Floats) -> _InSection:
+        rb = gear.base_radius
+        square = x * x + y * y
+        radius = np.sqrt(square)
+        angle = section_angle(gear, x, y, z)
+        index = np.rint(angle / gear.pitch_angle)
+        within = angle - index * gear.pitch_angle
+        inverse = 1.0 / np.maximum(radius, 1e-300)
+        return cls(
+            radius=radius,
+            ex=x * inverse,
+            ey=y * inverse,
+            reach=np.sqrt(np.maximum(square - rb * rb, 0.0)),
+            index=index,
+            side=np.copysign(1.0, within),
+            within=np.abs(within),
+            outer=gear.orientation * (radius - gear.form_radius) >= 0.0,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Outermost:
+    """The surface that each point lies farthest outside of, as far as surfaces were looked at; the distance (mm), and the normal there."""
+
+    surface: Ints
+    deviation: Floats
+    nx: Floats
+    ny: Floats
+    nz: Floats
+
+    def put(self, at: Bools, code: int, deviation: Floats, nx: Floats | float, ny: Floats | float, nz: float) -> None:
+        """Another surface at some of the points."""
+        self.surface[at] = code
+        for own, its in ((self.deviation, deviation), (self.nx, nx), (self.ny, ny), (self.nz, nz)):
+            np.copyto(own, its, where=at)
+
+
 def _locate_chunk(gear: Gear, bands: Bands, table: tuple[Floats, Floats], points: Floats, out: SurfacePoints) -> None:
     """Fill `out` (views into the result) for one chunk of points."""
-    rb, b, cos_helix, sin_helix = gear.base_radius, gear.face_width, gear.base_helix_cosine, math.sin(gear.base_helix_angle)
-    orientation = gear.orientation
     x, y, z = np.ascontiguousarray(points.T)
-    square = x * x + y * y
-    radius = np.sqrt(square)
-    angle = section_angle(gear, x, y, z)
-    index = np.rint(angle / gear.pitch_angle)
-    within = angle - index * gear.pitch_angle
-    side = np.copysign(1.0, within)
-    within = np.abs(within)
-    reach = np.sqrt(np.maximum(square - rb * rb, 0.0))  # L at the point's own radius
+    seen = _InSection.of(gear, x, y, z)
+    found = _outline(gear, bands, table, seen, z)
+    _end_there(gear, bands, z, found)
+    surface, deviation = found.surface, found.deviation
+    least = np.array(
+        [bands.flank[0]] * 2 + [bands.root[0], bands.tip[0], bands.end_low[0], bands.end_high[0], bands.bore[0], 0.0]
+    )
+    most = np.array([bands.flank[1]] * 2 + [bands.root[1], bands.tip[1], bands.end_low[1], bands.end_high[1], bands.bore[1], 0.0])
+    # A surface the bands exclude is not silently another one: such points are OTHER.
+    surface[~((deviation >= least.take(surface)) & (deviation <= most.take(surface)))] = OTHER
+
+    out.surface[:] = surface
+    out.tooth[:] = seen.index - gear.teeth * np.floor(seen.index / gear.teeth)
+    out.side[:] = np.where((surface == FLANK) | (surface == FILLET), seen.side, 0.0)
+    out.roll[:] = np.where(surface == FLANK, seen.reach - gear.orientation * gear.base_helix_cosine * deviation, np.nan)
+    known = surface != OTHER
+    safe = np.where(known, deviation, 0.0)
+    for axis, (value, component) in enumerate(((x, found.nx), (y, found.ny), (z, found.nz))):
+        out.normal[:, axis] = component
+        out.position[:, axis] = value - safe * component
+    out.deviation[:] = np.where(known, deviation, np.nan)
+
+
+def _outline(gear: Gear, bands: Bands, table: tuple[Floats, Floats], seen: _InSection, z: Floats) -> _Outermost:
+    """Of tooth sides, root, tip and bore."""
+    radius, outer, orientation = seen.radius, seen.outer, gear.orientation
+    found, at_root = _tooth_sides(gear, bands, table, seen, z)
+    outwards_x, outwards_y = orientation * seen.ex, orientation * seen.ey
+    root = orientation * (radius - gear.root_radius)
+    found.put(at_root, ROOT, root, outwards_x, outwards_y, 0.0)
+    tip = orientation * (radius - gear.tip_radius)
+    at_tip = outer & (tip >= found.deviation) & (tip >= bands.tip[0])
+    if gear.flank_end_radius != gear.tip_radius:  # a chamfer or a rounding lies between
+        found.surface[outer & (orientation * (radius - gear.flank_end_radius) > 0.0)] = OTHER
+        at_tip = outer & (np.abs(tip) <= bands.tip[1]) & (seen.within <= gear.tip_half_angle)
+    found.put(at_tip, TIP, tip, outwards_x, outwards_y, 0.0)
+    if gear.body_radius > 0.0:
+        bore = orientation * (gear.body_radius - radius)
+        found.put(bore > root, BORE, bore, -outwards_x, -outwards_y, 0.0)
+    return found
+
+
+def _tooth_sides(gear: Gear, bands: Bands, table: tuple[Floats, Floats], seen: _InSection, z: Floats) -> tuple[_Outermost, Bools]:
+    """Flanks and fillets, and the points below the form circle that lie on no fillet but on the root."""
+    rb, cos_helix, sin_helix = gear.base_radius, gear.base_helix_cosine, math.sin(gear.base_helix_angle)
+    reach, side, within, outer, orientation = seen.reach, seen.side, seen.within, seen.outer, gear.orientation
     flank = (orientation * (reach - rb * np.arctan(reach / rb)) + rb * (within - gear.base_half_angle)) * cos_helix
     fillet_within = within
     if gear.modified:
         flank = flank - cos_helix * _drawn_offset(gear, side, reach, z, flank)
         fillet_within = within - _offset_on(gear, side, gear.form_roll, z) / rb
-    inverse = 1.0 / np.maximum(radius, 1e-300)
-    ex, ey = x * inverse, y * inverse
-
-    outer = orientation * (radius - gear.form_radius) >= 0.0  # towards the tip
-    surface = np.where(outer, np.int8(FLANK), np.int8(FILLET))
-    deviation = np.where(outer, flank, 0.0)
+    inverse = 1.0 / np.maximum(seen.radius, 1e-300)
     radial = orientation * reach * (inverse * cos_helix)
     around = side * rb * (inverse * cos_helix)
     nz = side * -sin_helix
     if gear.spec.gap > 0.0:
         nz = nz * hand_at(gear, z)
-    nx, ny = radial * ex - around * ey, radial * ey + around * ex
+    nx, ny = radial * seen.ex - around * seen.ey, radial * seen.ey + around * seen.ex
+    found = _Outermost(np.where(outer, np.int8(FLANK), np.int8(FILLET)), np.where(outer, flank, 0.0), nx, ny, nz)
 
     from_space = 0.5 * gear.pitch_angle - fillet_within
     land = ~outer & (from_space <= gear.root_half_angle)
-    root = orientation * (radius - gear.root_radius)
-    below = ~outer & ~land & (root >= bands.root[0])
-    if below.any():
-        _fill_fillet(gear, table, below, radius, from_space, side, hand_at(gear, z), ex, ey, deviation, nx, ny, nz)
-    deep = ~outer & ~land & ~below
-    at_root = land | deep
-    surface[at_root] = ROOT
-    deviation = np.where(at_root, root, deviation)
+    below = ~outer & ~land & (orientation * (seen.radius - gear.root_radius) >= bands.root[0])
+    at = np.flatnonzero(below)
+    if len(at):
+        distance, along, across, up = _plumb_lines(gear, table, seen.radius[at], from_space[at])
+        across *= side[at]
+        found.deviation[at] = distance
+        nx[at], ny[at] = seen.ex[at] * along - seen.ey[at] * across, seen.ey[at] * along + seen.ex[at] * across
+        if gear.twist != 0.0:
+            nz[at] = up * (side * hand_at(gear, z))[at]
+    return found, ~outer & ~below
 
-    tip = orientation * (radius - gear.tip_radius)
-    at_tip = outer & (tip >= deviation) & (tip >= bands.tip[0])
-    if gear.flank_end_radius != gear.tip_radius:  # a chamfer or a rounding lies between
-        surface[outer & (orientation * (radius - gear.flank_end_radius) > 0.0)] = OTHER
-        at_tip = outer & (np.abs(tip) <= bands.tip[1]) & (within <= gear.tip_half_angle)
-    surface[at_tip] = TIP
-    deviation = np.where(at_tip, tip, deviation)
 
-    round_surface = at_root | at_tip
-    outwards_x, outwards_y = orientation * ex, orientation * ey
-    if gear.body_radius > 0.0:
-        bore = orientation * (gear.body_radius - radius)
-        at_bore = bore > root
-        surface[at_bore] = BORE
-        deviation = np.where(at_bore, bore, deviation)
-        nx, ny, nz = np.where(at_bore, -outwards_x, nx), np.where(at_bore, -outwards_y, ny), np.where(at_bore, 0.0, nz)
-        round_surface &= ~at_bore
-    nx, ny = np.where(round_surface, outwards_x, nx), np.where(round_surface, outwards_y, ny)
-    nz = np.where(round_surface, 0.0, nz)
-
-    outline = deviation
+def _end_there(gear: Gear, bands: Bands, z: Floats, found: _Outermost) -> None:
+    """The ends of the face, and what lies in the groove of a double helical gear or on an edge of the ends."""
+    b, outline = gear.face_width, found.deviation.copy()
     for code, gap, limit, up in ((END_LOW, -z, bands.end_low, -1.0), (END_HIGH, z - b, bands.end_high, 1.0)):
         at_end = (gap >= outline) & (gap >= limit[0])
-        if not at_end.any():
-            continue
-        surface[at_end] = code
-        deviation = np.where(at_end, gap, deviation)
-        nx, ny, nz = np.where(at_end, 0.0, nx), np.where(at_end, 0.0, ny), np.where(at_end, up, nz)
+        if at_end.any():
+            found.put(at_end, code, gap, 0.0, 0.0, up)
+    surface = found.surface
     if gear.spec.gap > 0.0:
         surface[_in_groove(gear, z, outline, bands) & (surface != BORE)] = OTHER
     edge = gear.spec.end_edge
     if edge > 0.0:
         margin = edge + bands.end_high[1]
         surface[(outline > -margin) & ((z < margin) | (z > b - margin))] = OTHER
-
-    least = np.array(
-        [bands.flank[0]] * 2 + [bands.root[0], bands.tip[0], bands.end_low[0], bands.end_high[0], bands.bore[0], 0.0]
-    )
-    most = np.array([bands.flank[1]] * 2 + [bands.root[1], bands.tip[1], bands.end_low[1], bands.end_high[1], bands.bore[1], 0.0])
-    # A surface the bands exclude is not silently another one: such points are OTHER.
-    inside = (deviation >= least.take(surface)) & (deviation <= most.take(surface))
-    surface[~inside] = OTHER
-
-    on_side = (surface == FLANK) | (surface == FILLET)
-    out.surface[:] = surface
-    out.tooth[:] = index - gear.teeth * np.floor(index / gear.teeth)
-    out.side[:] = np.where(on_side, side, 0.0)
-    out.roll[:] = np.where(surface == FLANK, reach - orientation * cos_helix * deviation, np.nan)
-    known = surface != OTHER
-    safe = np.where(known, deviation, 0.0)
-    for axis, (value, component) in enumerate(((x, nx), (y, ny), (z, nz))):
-        out.normal[:, axis] = component
-        out.position[:, axis] = value - safe * component
-    out.deviation[:] = np.where(known, deviation, np.nan)
 
 
 def _in_groove(gear: Gear, z: Floats, outline: Floats, bands: Bands) -> Bools:
@@ -357,33 +404,14 @@ def _drawn_offset(gear: Gear, side: Floats, reach: Floats, z: Floats, flank: Flo
     return result
 
 
-def _fill_fillet(
-    gear: Gear,
-    table: tuple[Floats, Floats],
-    below: Bools,
-    radius: Floats,
-    from_space: Floats,
-    side: Floats,
-    hand: Floats | float,
-    ex: Floats,
-    ey: Floats,
-    deviation: Floats,
-    nx: Floats,
-    ny: Floats,
-    nz: Floats,
-) -> None:
-    """Deviation and normal of the points `below` the form circle, written into the last four arrays."""
-    at = np.flatnonzero(below)
-    r, beta, x, y = radius[at], from_space[at], ex[at], ey[at]
+def _plumb_lines(gear: Gear, table: tuple[Floats, Floats], radius: Floats, beta: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Distance of points to the fillet, and its normal there along the point's radius, across it, and up; on the left of a space."""
     root = gear.root_curve
-    phi = root.normal_angle(r, beta, np.interp(r, *table), gear.fillet_end)
-    distance, along, across = root.plumb_line(r, beta, phi)
+    phi = root.normal_angle(radius, beta, np.interp(radius, *table), gear.fillet_end)
+    distance, along, across = root.plumb_line(radius, beta, phi)
     if gear.twist != 0.0:
-        distance, along, across, nz[at] = _lifted(gear, r, beta, phi, distance)
-        nz[at] *= (side * hand)[at]
-    deviation[at] = distance
-    across *= side[at]
-    nx[at], ny[at] = x * along - y * across, y * along + x * across
+        return _lifted(gear, radius, beta, phi, distance)
+    return distance, along, across, np.zeros_like(distance)
 
 
 def _lifted(gear: Gear, radius: Floats, beta: Floats, phi: Floats, distance: Floats) -> tuple[Floats, Floats, Floats, Floats]:
