@@ -43,10 +43,11 @@ def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: b
 
 def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, TipEdge]:
     """The same with the edges of another gear, as the same one has after wear."""
-    if (other.spec.tip_chamfer, other.spec.tip_rounding) == (gear.spec.tip_chamfer, gear.spec.tip_rounding):
-        return placed, TipEdge(gear)
-    gear = Gear.from_spec(replace(gear.spec, tip_chamfer=other.spec.tip_chamfer, tip_rounding=other.spec.tip_rounding))
-    return _placed_on(gear, placed, scans, planar), TipEdge(gear, other.spec.tip_chamfer)
+    edge = {key: getattr(other.spec, key) for key in ("tip_chamfer", "tip_chamfer_land", "tip_rounding")}
+    own = Gear.from_spec(replace(gear.spec, **edge))
+    return (
+        (placed, TipEdge(gear)) if own == gear else (_placed_on(own, placed, scans, planar), TipEdge(own, other.spec.tip_chamfer))
+    )
 
 
 def _placed_on(gear: Gear, placed: PlacedScan, scans: Sequence[Scan], planar: bool) -> PlacedScan:

@@ -141,7 +141,7 @@ class Gear:
             )
         if spec.tip_rounding > 0.0 and self.tip_half_angle <= 0.0:
             raise InputError(f"[{name}] tip_rounding = {spec.tip_rounding:g} mm leaves no top land; a smaller one would be right")
-        top_land = 2.0 * float(self.half_angle(self.tip_radius)) * self.tip_radius - 2.0 * spec.tip_chamfer
+        top_land = 2.0 * float(self.half_angle(self.tip_radius)) * self.tip_radius - 2.0 * spec.tip_chamfer_on_land
         if top_land <= 0.0:
             meet = self.orientation * self.base_half_angle  # inv α where both flanks would meet
             pointed = (
@@ -188,7 +188,7 @@ class Gear:
             land = (
                 self.tip_radius * self.half_angles(np.array([self.tip_radius]), ends).sum(axis=0).min()
                 - 2.0 * self.tip_radius * (float(self.half_angle(self.tip_radius)) - self.tip_half_angle if self.tip_arc else 0.0)
-                - 2.0 * spec.tip_chamfer
+                - 2.0 * spec.tip_chamfer_on_land
             )
             if land <= 0.0:
                 raise InputError(f"[{name}] the modifications leave no top land; smaller amounts at the tip would leave one")
@@ -332,7 +332,7 @@ class Gear:
         """Half angle of the top land, rad."""
         if self.tip_arc is not None:
             return self.tip_arc.half_angle
-        return float(self.half_angle(self.flank_end_radius)) - self.spec.tip_chamfer / self.tip_radius
+        return float(self.half_angle(self.flank_end_radius)) - self.spec.tip_chamfer_on_land / self.tip_radius
 
     @property
     def tip_arc(self) -> TipArc | None:

@@ -65,6 +65,8 @@ class GearSpec:
         (the root circle stays).
     bore_diameter, tip_chamfer, end_chamfer : float
         mm; 0 is none. Chamfers are 45°, both legs of this length.
+    tip_chamfer_land : float or None
+        Leg of the tip chamfer along the tip circle, mm; None: as long as the other.
     tip_rounding : float
         In place of a tip chamfer: radius of an arc tangent to flank and tip circle in the transverse section, mm; 0 is none.
     end_rounding : float
@@ -129,6 +131,7 @@ class GearSpec:
     protuberance: float = 0.0
     grinding_stock: float = 0.0
     protuberance_angle: float | None = None
+    tip_chamfer_land: float | None = None
 
     def __post_init__(self) -> None:
         try:
@@ -151,6 +154,8 @@ class GearSpec:
         _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
         for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter", "tip_rounding", "end_rounding"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
+        if self.tip_chamfer_land is not None:
+            _between(self.name, "tip_chamfer_land", self.tip_chamfer_land, 0.0, 1e5, "mm")
         for side in ("left", "right"):
             getattr(self, side).check(self.name)
         self._check_protuberance()
@@ -216,6 +221,11 @@ class GearSpec:
     def orientation(self) -> int:
         """ι: +1 of an external gear, −1 of a ring, whose radii run the other way from root to tip."""
         return -1 if self.internal else 1
+
+    @property
+    def tip_chamfer_on_land(self) -> float:
+        """Leg of the tip chamfer along the tip circle, mm."""
+        return self.tip_chamfer if self.tip_chamfer_land is None else self.tip_chamfer_land
 
     @property
     def body_diameter(self) -> float:

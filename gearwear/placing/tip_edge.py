@@ -15,6 +15,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK, OTHER, TIP, Bands, SurfacePoints, locate
+from gearwear.design.twist import section_angle
 from gearwear.errors import InputError
 
 REACH = 0.6
@@ -39,9 +40,9 @@ BESIDE = 8
 DEPARTED = 0.005
 """How far below the flank, mm, an edge has begun."""
 BEFORE = 1
-"""Bins by which the flank is taken to end before."""
-AS_DRAWN = 0.06
-"""Height, in modules, by which an edge that is drawn may begin earlier than drawn and still be that: three bins."""
+"""Bins by which the land is taken to end before."""
+AS_DRAWN = 0.04
+"""Height, in modules, by which an edge that is drawn may begin earlier than drawn and still be that: two bins."""
 MOST_SHARE = 0.75
 """Share of the flanks that must fall by half of what they do in the median: an edge that some teeth have is worn or broken."""
 LEAST_ON_FLANK = 5
@@ -116,15 +117,40 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
         return TipEdge(gear)
     last = count + OVER - 1
     depth = float(min(one[last] - one[0] for one in profiles))
-    begins = float(edges[max(_departs(one, last) for one in profiles) + 1 + BEFORE])
+    begins = float(edges[max(_departs(one, last) for one in profiles) + 1])
     known = way * (gear.tip_radius - gear.flank_end_radius)
     if depth < LEAST_DEPTH or begins <= known + AS_DRAWN * m or not _of_all(flank, height, first, begins, depth):
         return TipEdge(gear)
+    # Where the land is not seen to end, it ends 45° up from where the flank does.
+    land = _land(located, gear, top)
+    half = float(gear.half_angle(gear.tip_radius - way * begins))
+    leg = None if land is None else max(half * gear.tip_radius - land, 0.0)
     try:
-        ends = Gear.from_spec(replace(gear.spec, tip_chamfer=begins, tip_rounding=0.0))
+        ends = Gear.from_spec(replace(gear.spec, tip_chamfer=begins, tip_chamfer_land=leg, tip_rounding=0.0))
     except InputError:  # it leans so far that no chamfer of 45° ends there
         return TipEdge(gear)
-    return TipEdge(ends, begins, depth * (begins - top) / (begins - first))
+    return TipEdge(ends, begins, gear.base_radius * (float(gear.half_angle(gear.tip_radius)) - ends.tip_half_angle))
+
+
+def _land(located: SurfacePoints, gear: Gear, top: float) -> float | None:
+    """Half the width of the lands of all teeth, mm along the tip circle: as far out as their points lie no lower than `top` mm below the tip, as those in
+    the middle do; None where too few are seen."""
+    m, points = gear.transverse_module, located.measured
+    near = np.isin(located.surface, (FLANK, TIP, OTHER)) & (points[:, 2] > 0.05 * m) & (points[:, 2] < gear.face_width - 0.05 * m)
+    points = points[near]
+    height = gear.orientation * (gear.tip_radius - np.hypot(points[:, 0], points[:, 1]))
+    angle = section_angle(gear, *points.T)
+    across = gear.tip_radius * np.abs(np.remainder(angle + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle)
+    edges = np.asarray(
+        STEP * m * np.arange(int(float(gear.half_angle(gear.tip_radius)) * gear.tip_radius / (STEP * m)) + 1), dtype=np.float64
+    )
+    on = height < top + REACH * m
+    profile = _medians(across[on], -height[on], edges)
+    middle = float(np.nanmedian(profile[: max(len(profile) // 4, 1)])) if np.isfinite(profile).any() else math.nan
+    low = np.flatnonzero(profile < middle - DEPARTED)
+    if not math.isfinite(middle) or not len(low) or low[0] < 1 + BEFORE:
+        return None
+    return float(edges[low[0] - BEFORE])
 
 
 def _on_sharp(located: SurfacePoints, gear: Gear) -> SurfacePoints:
