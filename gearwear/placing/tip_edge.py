@@ -124,12 +124,13 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
     # Where the land is not seen to end, it ends 45° up from where the flank does.
     land = _land(located, gear, top)
     half = float(gear.half_angle(gear.tip_radius - way * begins))
-    leg = None if land is None else max(half * gear.tip_radius - land, 0.0)
+    leg = None if land is None else max(half * gear.tip_radius - land + BEFORE * STEP * m, 0.0)
     try:
         ends = Gear.from_spec(replace(gear.spec, tip_chamfer=begins, tip_chamfer_land=leg, tip_rounding=0.0))
     except InputError:  # it leans so far that no chamfer of 45° ends there
         return TipEdge(gear)
-    return TipEdge(ends, begins, gear.base_radius * (float(gear.half_angle(gear.tip_radius)) - ends.tip_half_angle))
+    ends_at = ends.tip_half_angle if land is None else land / gear.tip_radius
+    return TipEdge(ends, begins, gear.base_radius * (float(gear.half_angle(gear.tip_radius)) - ends_at))
 
 
 def _land(located: SurfacePoints, gear: Gear, top: float) -> float | None:
@@ -148,9 +149,7 @@ def _land(located: SurfacePoints, gear: Gear, top: float) -> float | None:
     profile = _medians(across[on], -height[on], edges)
     middle = float(np.nanmedian(profile[: max(len(profile) // 4, 1)])) if np.isfinite(profile).any() else math.nan
     low = np.flatnonzero(profile < middle - DEPARTED)
-    if not math.isfinite(middle) or not len(low) or low[0] < 1 + BEFORE:
-        return None
-    return float(edges[low[0] - BEFORE])
+    return float(edges[low[0]]) if math.isfinite(middle) and len(low) and low[0] > BEFORE else None
 
 
 def _on_sharp(located: SurfacePoints, gear: Gear) -> SurfacePoints:

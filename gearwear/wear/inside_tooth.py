@@ -65,6 +65,11 @@ def above_circle(gear: Gear, radius: Floats, circle: float) -> Floats:
 
 
 def half_angle_at(gear: Gear, radius: Floats, root: float) -> Floats:
-    """Half angles of a tooth at radii, rad; beyond its ends those at the root given and at the end of the flank."""
+    """Half angles of a tooth at radii, rad: of a chamfered or rounded tip edge on the straight line from flank to land; beyond the tooth those of its ends."""
     low, high = sorted((root, gear.flank_end_radius))
-    return gear.half_angle(np.clip(radius, low, high))
+    half = gear.half_angle(np.clip(radius, low, high))
+    edge = abs(gear.tip_radius - gear.flank_end_radius)
+    if edge == 0.0:
+        return half
+    share = np.clip(above_circle(gear, radius, gear.flank_end_radius) / edge, 0.0, 1.0)
+    return np.asarray(half - share * (float(gear.half_angle(gear.flank_end_radius)) - gear.tip_half_angle), dtype=np.float64)

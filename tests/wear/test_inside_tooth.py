@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gearwear.design import Gear, GearSpec
 from gearwear.wear.inside_tooth import depth_inside, perhaps_inside
+from tests.placing.placing import designed
+from tests.synthetic import GearNumbers, Recipe, make_scan
+from tests.synthetic.edges import bevelled, height_of
 
 GEARS = {
     "spur": GearSpec("", 25, 3.0, 20.0),
@@ -31,3 +36,17 @@ def test_all_that_are_deep_are_asked(kind):
     assert deep.sum() > 10_000
     assert np.isin(np.flatnonzero(deep), asked).all()
     assert len(asked) < 1.2 * deep.sum()  # or it would save nothing
+
+
+def test_a_bevel_of_the_tip_is_no_place_inside():
+    """As deep as 0.38 mm below the flank drawn on; off the straight line from flank to land by its bend, some hundredths."""
+    numbers = GearNumbers(20, 3.0, 20.0, 20.0, 0.1)
+    sharp, height = designed(numbers), height_of(numbers, 0.45)
+    half = [float(sharp.half_angle(radius)) for radius in (sharp.tip_radius - height, sharp.tip_radius)]
+    leg = (half[0] - half[1]) * sharp.tip_radius + 0.45
+    gear = Gear.from_spec(replace(sharp.spec, tip_chamfer=height, tip_chamfer_land=leg))
+    points = bevelled(make_scan(Recipe(gear=numbers, noise_um=0.0, pose="none").of_size(20_000), 1).points, numbers, 0.45, 0.45)
+    on_bevel = np.hypot(*points[:, :2].T) > gear.flank_end_radius
+    assert on_bevel.sum() > 500
+    assert depth_inside(points[on_bevel], sharp)[1].max() > 0.1
+    assert np.abs(depth_inside(points[on_bevel], gear)[1]).max() < 0.03
