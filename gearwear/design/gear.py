@@ -141,7 +141,7 @@ class Gear:
             )
         if spec.tip_rounding > 0.0 and self.tip_half_angle <= 0.0:
             raise InputError(f"[{name}] tip_rounding = {spec.tip_rounding:g} mm leaves no top land; a smaller one would be right")
-        top_land = 2.0 * float(self.half_angle(self.tip_radius)) * self.tip_radius - 2.0 * spec.tip_chamfer_on_land
+        top_land = 2.0 * self.tip_radius * (float(self.half_angle(self.tip_radius)) if self.tip_arc else self.tip_half_angle)
         if top_land <= 0.0:
             meet = self.orientation * self.base_half_angle  # inv α where both flanks would meet
             pointed = (
@@ -185,11 +185,9 @@ class Gear:
             for side in Side:
                 self.drawn(side).check(name if spec.left == spec.right else f"{name}.{side}")
             ends = np.array([0.0, 0.5, 1.0]) * spec.face_width
-            land = (
-                self.tip_radius * self.half_angles(np.array([self.tip_radius]), ends).sum(axis=0).min()
-                - 2.0 * self.tip_radius * (float(self.half_angle(self.tip_radius)) - self.tip_half_angle if self.tip_arc else 0.0)
-                - 2.0 * spec.tip_chamfer_on_land
-            )
+            land = self.tip_radius * self.half_angles(np.array([self.tip_radius]), ends).sum(
+                axis=0
+            ).min() - 2.0 * self.tip_radius * (float(self.half_angle(self.tip_radius)) - self.tip_half_angle)
             if land <= 0.0:
                 raise InputError(f"[{name}] the modifications leave no top land; smaller amounts at the tip would leave one")
 

@@ -25,7 +25,7 @@ def outline_area(gear: Gear) -> float:
     fillet = radius * np.exp(1j * (0.5 * gear.pitch_angle - angle))
     tip_angle = np.angle(string[-1])
     chamfered = gear.spec.tip_chamfer > 0.0
-    land_angle = tip_angle - gear.spec.tip_chamfer / gear.tip_radius if chamfered else tip_angle
+    land_angle = tip_angle - gear.spec.tip_chamfer_on_land / gear.tip_radius if chamfered else tip_angle
     corner = gear.tip_radius * np.exp(1j * land_angle)
     curve = np.concatenate([[corner], string[::-1], fillet[::-1]])
     swept = 0.5 * np.sum((curve[:-1].conj() * curve[1:]).imag)
@@ -37,6 +37,13 @@ def outline_area(gear: Gear) -> float:
 @EACH
 def test_section_area_by_greens_theorem(gear):
     # Chords of h on a curve of curvature κ miss h³ κ / 12 each: (1e-5)² of the curves' own share.
+    assert gear.section_area() == pytest.approx(outline_area(gear), rel=1e-10)
+
+
+@pytest.mark.parametrize("legs", [(0.8, None), (0.3, 0.1), (0.3, 0.5), (1.5, None)], ids=str)
+def test_section_area_with_a_chamfer_of_two_legs(legs):
+    """While a land is left: chamfers of 0.8 and 1.5 mm leave 0.71 and 0.02 mm of it, as the tooth is wider where they begin."""
+    gear = Gear.from_spec(GearSpec("gear", 20, 2.0, 10.0, tip_chamfer=legs[0], tip_chamfer_land=legs[1]))
     assert gear.section_area() == pytest.approx(outline_area(gear), rel=1e-10)
 
 

@@ -41,7 +41,7 @@ def _build(teeth: int = 20, **values: float) -> Gear:
         ({"teeth": 5, "dedendum": 3.0}, "root diameter -2.0000 mm"),
         ({"teeth": 12, "addendum": -0.5, "profile_shift": -0.3}, "lies inside the base circle"),
         ({"addendum": 1.9, "profile_shift": 0.5}, "the tooth is pointed"),
-        ({"tip_chamfer": 0.8}, "the tooth is pointed"),
+        ({"tip_chamfer": 1.6}, "the tooth is pointed: at tip diameter 44.0000 mm the top land is -0.0872 mm"),
         ({"teeth": 6, "profile_shift": 0.6, "addendum": 0.8, "tip_chamfer": 0.1}, "more than the 45° of the chamfer"),
         ({"rack_tip_radius": 0.6}, "too large for dedendum 1.25 and 20°, at most 0.4719"),
         ({"teeth": 8, "addendum": -0.2}, "reaches the flank's end 15.2000 mm: no involute is left"),
