@@ -15,7 +15,7 @@ from gearwear.comparison.collecting import Cut
 from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.own_tips import on_its_tips, on_tips_of
 from gearwear.comparison.passes import Streamed, first_pass
-from gearwear.comparison.placed_notes import doubts_of, said_of_scale, sample_note, smoothing_of
+from gearwear.comparison.placed_notes import VIEWS_MAY_LIE_APART, doubts_of, said_of_scale, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, clip_of, with_pits
 from gearwear.comparison.stated import at_20_degrees, check_streamed, tooth_1_of, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
@@ -28,7 +28,7 @@ from gearwear.design.twist import Toothing, drawn_height, refuse
 from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells
-from gearwear.placing.layers import layers_apart, said_of_layers
+from gearwear.placing.layers import UNEASY, layers_apart, said_of_layers
 from gearwear.placing.low_tips import below_tips
 from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose
@@ -221,6 +221,8 @@ class MeasuredGear(Card):
     def remarks(self) -> tuple[str, ...]:
         """Notes on how the numbers came about."""
         smoothing = smoothing_of(self.located, self.placed.registration.noise, len(self.scans))
+        if self.context.views_apart and not self.layered.any():
+            smoothing = (VIEWS_MAY_LIE_APART,)
         sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
         told = None if self.mark is None else self.mark.sentence
         return (*sample, *smoothing, *filter(None, [self.root.words(), self.tip_edge.words(), told]), *self.design.datum.words)
@@ -447,7 +449,8 @@ def _in_cells(
         first = streamed.first.cells
     context = _context(first, placed, design, name, planar)
     absent = frozenset(piece.tooth for piece in broken if piece.whole)
-    context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent)
+    apart = len(scans) == 1 and bool(layers_apart(first, UNEASY).any())
+    context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent, views_apart=apart)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
         design=design, scans=scans, part=name, root=root, tip_edge=tip_edge, placed=placed, context=context, first=first, loop=None, final=final,

@@ -87,6 +87,12 @@ def _or_a_view(effect: FoundEffect) -> FoundEffect:
     return effect.or_one_of({VIEW_REGISTRATION})
 
 
+VIEWS_MAY_LIE_APART = (
+    "points scatter more on some teeth than on others, on flanks and tips alike: views that do not quite lie on each other may have been put together in this "
+    "scan; effects that they would leave have a view among their alternatives"
+)
+
+
 def smoothing_of(located: SurfacePoints, noise: float, views: int) -> tuple[str, ...]:
     """That neighbouring points share their errors, where they do; views that are stitched differ inside a cell by more than their noise."""
     return (SMOOTHED,) if views == 1 and shared_errors(located, noise) < SHARED else ()

@@ -13,6 +13,7 @@ from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.quantity import NORMAL_95, counted, pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.diagnose.as_views import share_moved
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
@@ -20,6 +21,7 @@ from gearwear.diagnose.effects import named_effects
 from gearwear.diagnose.effects.base import MADE, MEASURED, Context, Kind
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.effects.scale import EFFECT, SCALE
+from gearwear.diagnose.effects.view_registration import VIEW_REGISTRATION
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
 from gearwear.diagnose.jumps import jump_deviations
@@ -312,7 +314,7 @@ def account(
                 candidate=candidate,
                 amplitudes=amplitudes[part],
                 parameters=parameters,
-                alternatives=alternatives(problem, model, i),
+                alternatives=_or_views(alternatives(problem, model, i), fit, problem.context, candidate, amplitudes[part]),
                 evidence=evidence[i],
                 rms_before=steps[i][0],
                 rms_after=steps[i + 1][0],
@@ -357,6 +359,15 @@ def account(
         others=(),
         correlations=correlations(known, joint),
     )
+
+
+def _or_views(names: tuple[str, ...], fit: Fit, context: Context, candidate: Candidate, amplitudes: Floats) -> tuple[str, ...]:
+    """The alternatives of an effect, with a view out of place where views may lie apart in the scan and may have done the same."""
+    if not context.views_apart or candidate.name == VIEW_REGISTRATION or VIEW_REGISTRATION in names:
+        return names
+    field = fit.dictionary.take(candidate.columns) @ amplitudes
+    moved = share_moved(fit.cells.points, field, fit.use)
+    return tuple(sorted((*names, VIEW_REGISTRATION))) if moved >= rules().moved else names
 
 
 def form_of_all(patterns: tuple[Pattern, ...], cells: int) -> Floats:

@@ -167,6 +167,14 @@ class Rules:
         off=2.0,
     )
 
+    moved: float = rule(
+        0.8,
+        "1",
+        "derived",
+        "share of an effect that rigid motions of quarters of the gear explain from which views may have left it: helix slope, wobble and waves to the second"
+        " order have 0.84 and more, coat, taper, scale and forms 0.46 at most",
+        off=2.0,
+    )
     stands_in: float = rule(
         0.5,
         "1",

@@ -80,6 +80,8 @@ class Context:
         Sides worn throughout, whose flanks are left out: what they were made like only the other side's tell, and no fillet.
     absent : frozenset of int
         Teeth that are missing or were not seen: what each tooth has of its own is not known of these.
+    views_apart : bool
+        Whether views that do not quite lie on each other may have been put together in the scan.
     """
 
     gear: Gear
@@ -94,6 +96,7 @@ class Context:
     fillets_told: bool = True
     worn: frozenset[Side] = frozenset()
     absent: frozenset[int] = frozenset()
+    views_apart: bool = False
 
     @property
     def pitch_roll(self) -> float:
