@@ -22,8 +22,9 @@ from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
 from gearwear.report.words.numbers import quantity, which_flanks
-from gearwear.report.words.verdict import doubts, key_figures, loop_words, verdict, wrong_design
+from gearwear.report.words.verdict import doubts, key_figures, loop_words, thinnest_words, verdict, wrong_design
 from gearwear.wear.limits import FlankLimit
+from gearwear.wear.tooth_summary import ThinnestTooth
 from tests.report.fake import bare_results, changed, fake_regions, fake_results, fake_thickness
 
 
@@ -305,3 +306,10 @@ def test_key_figures_carry_their_uncertainty_and_leave_out_what_is_not_there():
     assert {"Backlash, greatest", "Transmission error", "Thinnest tooth"} <= set(full)
     bare = {one.name for one in key_figures(bare_results())}
     assert bare == {"Section lost", "Thinnest tooth", "Error outside wear, RMS"}
+
+
+@pytest.mark.parametrize(
+    ("low", "told"), [(9.650, "9.6611 ± 0.0040 mm"), (9.640, "9.640 to 9.669 mm")], ids=["about even", "far below"]
+)
+def test_the_thinnest_tooth_is_an_interval_where_that_reaches_far_down(low, told):
+    assert thinnest_words(ThinnestTooth(1, 9.66111, 0.00402, low, 9.669, 3.2)).replace(SPACE, " ") == told

@@ -30,6 +30,7 @@ from gearwear.report.words.numbers import effect_title, which_flanks
 from gearwear.scan.types import Scan
 from gearwear.wear.breakage import MISSING_TOOTH
 from gearwear.wear.regions import WearRegion
+from gearwear.wear.tooth_summary import ThinnestTooth
 
 LITTLE_SEEN, NOT_SEEN = 0.5, 0.05
 """Share of the flanks below which a result is doubtful; share of one side's below which that side was not seen."""
@@ -52,6 +53,8 @@ LEAST_STD = 1e-4
 ALIKE = 0.9
 """Correlation of two effects' sizes from which on the scan gives little more than their sum or difference."""
 
+LOPSIDED = 4.0
+"""Standard deviations that the 95 % interval of the thinnest tooth reaches down from which on it is told whole: the bottom may lie deeper, and no higher."""
 LEAST_NAME = 3
 """Letters of a file's name that are left of it at least."""
 
@@ -381,7 +384,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
         across = "" if results.gear.twist == 0.0 else ", transverse arc"
         note = f"tooth {tooth.tooth + 1}{where}; design {number(results.gear.tooth_thickness, 3)}{SPACE}mm, at the reference circle{across}"
-        key.append(KeyFigure("Thinnest tooth", known(tooth.value, tooth.std, 3, "mm", 0.0), note))
+        key.append(KeyFigure("Thinnest tooth", thinnest_words(tooth), note))
     if results.pair is not None:
         key += _contact_figures(results)
     before, name = results.plain_rms if loop is None else loop.rms_before, "Error outside wear, RMS"
@@ -414,6 +417,13 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
         note = f"at {significant(present.load_per_width)}{SPACE}N/mm; design {number(1e3 * pair.loaded.design.peak_to_peak, 1)}{SPACE}µm"
         figures.append(KeyFigure("The same under load", value, note))
     return figures
+
+
+def thinnest_words(tooth: ThinnestTooth) -> str:
+    """The least thickness, with its standard deviation; the 95 % interval in its place where that reaches much further down."""
+    if tooth.value - tooth.low > LOPSIDED * tooth.std > 0.0:
+        return f"{number(tooth.low, 3)} to {number(tooth.high, 3)}{SPACE}mm"
+    return known(tooth.value, tooth.std, 3, "mm", 0.0)
 
 
 def known(value: float, std: float, digits: int, unit: str = "", least: float = LEAST_STD) -> str:
