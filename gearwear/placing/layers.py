@@ -41,6 +41,7 @@ def layers_apart(cells: Cells, loud: float = LOUD) -> Bools:
     # Each side against its own: one of both may have been ground more finely.
     flanks: Bools = np.logical_or(*(_loud(grid.flank_shape(known)[:, side.index].reshape(teeth, -1), loud) for side in Side))
     tips = _loud(known[start : start + size].reshape(teeth, -1), loud)
+    tips &= _told(cells.count[start : start + size].reshape(teeth, -1), loud)  # of all surfaces these have the fewest points
     return flanks if float((flanks & tips).mean()) >= LEAST_SHARE else np.zeros(teeth, dtype=np.bool_)
 
 
@@ -60,6 +61,13 @@ def said_of_layers(cells: Cells, apart: Bools) -> tuple[str, ...]:
 def _known_scatter(cells: Cells) -> Floats:
     """Scatter of the cells with points enough, (m,) mm; nan in the others."""
     return np.where(cells.count >= FEWEST, cells.scatter, np.nan)
+
+
+def _told(count: Floats, loud: float) -> Bools:
+    """On which teeth points enough tell such a ratio from chance, by the points (teeth, n) of their cells: a median of scatters from so many points
+    beyond one a cell is known to 1.25 / √(2 free), and two of that are less: flanks and tips of several teeth must say the same."""
+    free = np.where(count >= FEWEST, count - 1.0, 0.0).sum(axis=1)
+    return np.asarray(2.0 * 1.25 / np.sqrt(2.0 * np.maximum(free, 1.0)) < loud - 1.0)
 
 
 def _loud(scatter: Floats, loud: float) -> Bools:
