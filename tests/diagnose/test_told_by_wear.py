@@ -26,7 +26,7 @@ def one(effect):
 @pytest.mark.parametrize(
     "effect",
     [
-        Effect("taper", {"taper_um": 30.0}),
+        pytest.param(Effect("taper", {"taper_um": 30.0}), marks=pytest.mark.long),
         Effect("helix_slope", {"slope_um": 30.0}),
         pytest.param(Effect("taper", {"taper_um": -60.0}), marks=pytest.mark.long),
         pytest.param(Effect("helix_slope", {"slope_um": -60.0}), marks=pytest.mark.long),

@@ -28,6 +28,7 @@ def askew(gap_um: float) -> SecondLoop:
     return traced(replace(SHARED, gap_um=gap_um, softness=0.9, coupling=1.0), seed=3)
 
 
+@pytest.mark.long
 def test_misalignment_is_named_with_its_size_and_the_end_that_is_open():
     gap = 30.0
     found = askew(gap).effect("misalignment")

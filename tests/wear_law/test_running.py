@@ -25,6 +25,7 @@ def histories() -> tuple[WearHistory, ...]:
         return run_histories(*PAIR, LOAD, 6.0 * SINGLE / LOAD)
 
 
+@pytest.mark.long
 def test_a_run_put_in_is_run_on(histories, monkeypatch):
     """Growth to twice the cycles is that of the run itself, not of its rate so far."""
     monkeypatch.setattr(running, "run_histories", lambda *_: histories)

@@ -42,6 +42,7 @@ def wave(cells, left, right):
     return np.sin(3.0 * np.pi * along(cells)) * np.where(cells.points.side == int(Side.LEFT), left, right)
 
 
+@pytest.mark.long
 def test_under_a_form_of_all_teeth_a_range_bias_is_not_told_from_a_profile(unworn):
     """Flanks cut as a bias of range would show them, by 1 − L / r, and tips as drawn; where the root is free nothing else speaks for a bias."""
     points = unworn.points
@@ -78,6 +79,7 @@ def test_what_a_maker_may_have_left_as_well_is_left_in_the_part(what, form, left
     assert kept.name == ("thin" if left else "bias")
 
 
+@pytest.mark.long
 def test_a_coat_on_roots_and_tips_is_told_whatever_the_flanks_are_like():
     cells = binned((), (Effect("coating", {"thickness_um": 15.0}),))
     loop = explained(with_form(cells, wave(cells, 0.04, 0.02)))
@@ -103,6 +105,7 @@ def test_a_hollow_form_of_one_side_within_the_class_that_teeth_have_alike_is_as_
     assert {loop.worn_sides, *loop.undecided} >= {LEFT} and loop.worn_sides == sides
 
 
+@pytest.mark.long
 def test_flanks_that_differ_on_both_sides_were_cut_so(unworn):
     """As in the case that is worn, but right flanks have as much of the same shape, up or down by chance."""
     first, last = unworn.grid.roll_edges[[0, -1]]
