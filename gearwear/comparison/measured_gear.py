@@ -52,6 +52,7 @@ from gearwear.wear.breakage import (
     with_borders,
 )
 from gearwear.wear.section_sums import SectionBand, SectionSums
+from gearwear.wear.untold import UntoldFlanks
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
@@ -329,6 +330,8 @@ class MeasuredGear(Card):
         elif not self.root.fits_design:  # what all fillets have is how they were made, as the loop has it
             unexplained = common_fillet(self.cells)
         corrected = self.corrected
+        if self.loop is not None:
+            unexplained += UntoldFlanks.of(self.cells, self.loop).raised
         return corrected.with_deviation(corrected.points.deviation - self.manufacture - unexplained)
 
     def _part_of(self, kinds: frozenset[Kind]) -> Floats:

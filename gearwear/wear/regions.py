@@ -243,7 +243,7 @@ def find_wear(
     on_worn = np.isin(where[:, 1], [side.index for side in worn])
     least = np.where(places.by_level, LEAST_VOLUME_OF_WORN_FLANK, np.where(places.pitted, LEAST_VOLUME_OF_PITS, LEAST_VOLUME))[at]
     whole_side = on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE)
-    sure = (volumes.certainty > least) | whole_side | places.hollowed[at]
+    sure = (volumes.certainty > least) | whole_side | (places.hollowed[at] & (volumes.value > 0.0))
     stds = np.sqrt(np.diag(covariance))
     beyond_chance = np.where(least == LEAST_VOLUME_OF_PITS, NORMAL_95, BEYOND_CHANCE) * stds
     counted = np.zeros_like(places.mask)

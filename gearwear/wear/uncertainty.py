@@ -26,6 +26,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
 from gearwear.placing.side_maps import SideMaps
+from gearwear.wear.untold import UntoldFlanks
 from gearwear.wear.weights import SideWeights, by_side
 
 BEYOND_CHANCE = 3.0
@@ -119,8 +120,8 @@ class CellErrors:
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         weighted = columns * weight[:, None]
         through = covariance.apply(weighted)
-        hidden = fields if loop.hidden is None else np.hstack([fields, loop.hidden])
-        return cls(covariance, columns, inverse, through, weighted.T @ through, hidden)
+        hidden = [fields, *([] if loop.hidden is None else [loop.hidden]), UntoldFlanks.of(cells, loop).fields]
+        return cls(covariance, columns, inverse, through, weighted.T @ through, np.hstack(hidden))
 
     def covariance_of(self, weights: Floats | SideWeights) -> Floats:
         """(k, k) of sums with these weights."""

@@ -45,6 +45,12 @@ class EachTooth(CatalogueEffect):
         *others, last = _present(context)
         return own[:, others] - own[:, [last]]
 
+    def amounts(self, amplitudes: Floats, context: Context) -> Floats:
+        """Of each tooth, (teeth,), from the amplitudes; 0 of one that has none."""
+        result = np.zeros(context.gear.teeth)
+        result[_present(context)] = [*amplitudes, -amplitudes.sum()]
+        return result
+
     def deviation(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         """Of points (n,) for an amount of 1 on their tooth."""
         raise NotImplementedError
