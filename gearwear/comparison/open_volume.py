@@ -9,7 +9,7 @@ from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
-from gearwear.wear.limits import common_loss, even_part
+from gearwear.wear.limits import common_loss, even_depth, even_part
 from gearwear.wear.regions import Wear
 
 
@@ -134,6 +134,13 @@ class OpenVolume:
         toothed = self.measured.cells.grid.toothed
         lost = even_part(self.found.side_maps, self.measured.worn_sides, self.measured.loop.as_made_std, toothed)
         return lost if lost > self.found.volume_std else 0.0
+
+    def even_depth(self, side: Side) -> float:
+        """How much of the depth of a worn flank its side has lost all over alike, mm, where that may be thinner teeth; 0 where it is none of that."""
+        if self.even_or_thin <= 0.0 or side not in self.measured.worn_sides:
+            return 0.0
+        assert self.measured.loop is not None
+        return even_depth(self.found.side_maps, side, self.measured.loop.as_made_std, self.measured.cells.grid.toothed)
 
     @property
     def _side_area(self) -> float:

@@ -265,13 +265,23 @@ def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozense
 
 
 def even_part(sheets: SideMaps, worn: frozenset[Side], as_made_std: tuple[float, float], toothed: Bools) -> float:
-    """What the flanks of sides worn throughout have lost all over alike, mm³: as teeth cut thinner have on both sides.
+    """What the flanks of sides worn throughout have lost all over alike, mm³: as teeth cut thinner have on both sides. Parameters as of `even_depth`, of
+    several sides."""
+    lost = 0.0
+    for side in worn:
+        seen = int(_of_side(sheets, side, toothed)[1].sum())
+        lost += even_depth(sheets, side, as_made_std, toothed) * seen * int(toothed.sum()) * sheets.flank_row
+    return lost
+
+
+def even_depth(sheets: SideMaps, side: Side, as_made_std: tuple[float, float], toothed: Bools) -> float:
+    """How much the flanks of a side worn throughout have lost all over alike, mm.
 
     Parameters
     ----------
     sheets : SideMaps
         Deviations from the as-made gear.
-    worn : frozenset of Side
+    side : Side
     as_made_std : (float, float)
         How well is known how high left and right flanks stood as they were made, mm.
     toothed : (rows,) bool
@@ -280,20 +290,19 @@ def even_part(sheets: SideMaps, worn: frozenset[Side], as_made_std: tuple[float,
     Notes
     -----
     Nothing slides at the pitch point, and what slides leaves the face where nothing carries: a place that lost nothing by sliding there is on every
-    flank. The highest cell of the side, in the median of the teeth, tells how low even that lies, rather less than more; below `NORMAL_95` standard
+    flank. The highest cell of the side, in the median of the teeth, tells how low even that lies, rather less than more; below 1.96 standard
     deviations of the level it is none.
     """
-    flank = np.where(sheets.seen, sheets.deviation, np.nan)[:, :, toothed, sheets.fillet :]
-    lost = 0.0
-    for side in worn:
-        heights = flank[:, side.index][np.isfinite(flank[:, side.index]).any(axis=(1, 2))]
-        typical = typical_heights(heights)
-        if not np.isfinite(typical).any():
-            continue
-        highest = float(np.nanmax(typical))
-        if -highest > NORMAL_95 * as_made_std[side.index]:
-            lost -= highest * len(heights) * int(toothed.sum()) * sheets.flank_row
-    return lost
+    flank, seen = _of_side(sheets, side, toothed)
+    typical = typical_heights(flank[seen]) if seen.any() else flank[:0]
+    highest = float(np.nanmax(typical)) if np.isfinite(typical).any() else 0.0
+    return -highest if -highest > NORMAL_95 * as_made_std[side.index] else 0.0
+
+
+def _of_side(sheets: SideMaps, side: Side, toothed: Bools) -> tuple[Floats, Bools]:
+    """Deviations of the flanks of a side, (teeth, rows, columns) mm, nan where not seen, and which of them were seen, (teeth,)."""
+    flank = np.where(sheets.seen, sheets.deviation, np.nan)[:, side.index, toothed, sheets.fillet :]
+    return flank, np.asarray(np.isfinite(flank).any(axis=(1, 2)))
 
 
 def _depth(seed: float, cell_std: Floats, by_noise: Floats, volume: Floats, least: float, level: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
 from gearwear.report.words.numbers import quantity, which_flanks
-from gearwear.report.words.verdict import doubts, key_figures, loop_words, thinnest_words, verdict, wrong_design
+from gearwear.report.words.verdict import deepest_range, doubts, key_figures, loop_words, thinnest_words, verdict, wrong_design
 from gearwear.wear.limits import FlankLimit
 from gearwear.wear.tooth_summary import ThinnestTooth
 from tests.report.fake import bare_results, changed, fake_regions, fake_results, fake_thickness
@@ -313,3 +314,12 @@ def test_key_figures_carry_their_uncertainty_and_leave_out_what_is_not_there():
 )
 def test_the_thinnest_tooth_is_an_interval_where_that_reaches_far_down(low, told):
     assert thinnest_words(ThinnestTooth(1, 9.66111, 0.00402, low, 9.669, 3.2)).replace(SPACE, " ") == told
+
+
+@pytest.mark.parametrize(("even", "told"), [(0.0, ""), (0.053, "116 to 259 µm"), (0.2, "0 to 259 µm")])
+def test_the_deepest_place_is_an_interval_where_an_even_loss_may_be_thin_teeth(even, told):
+    """214 ± 23 µm: less 53 and 1.96 times 23, and more by that."""
+    (region,) = fake_regions()[:1]
+    region = replace(region, max_depth=0.214, max_depth_std=0.023)
+    results = SimpleNamespace(open_volume=SimpleNamespace(even_depth=lambda side: even if side == region.side else 0.0))
+    assert deepest_range(results, region).replace(SPACE, " ") == told

@@ -13,7 +13,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import make_side_maps
-from gearwear.wear.limits import common_loss, even_part, faint_sides, upper_limit
+from gearwear.wear.limits import common_loss, even_depth, even_part, faint_sides, upper_limit
 from gearwear.wear.regions import find_wear
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
@@ -122,6 +122,9 @@ def test_the_even_part_of_a_loss_is_what_its_least_place_has_lost(even):
     assert found == pytest.approx(
         (even + 0.05 * np.abs(way).min()) * area if even else 0.0, rel=0.05
     )  # no cell is the pitch point itself
+    depth = even_depth(sheets, Side.LEFT, (0.001, 0.001), GRID.toothed)
+    assert depth == pytest.approx(even + 0.05 * np.abs(way).min() if even else 0.0, rel=0.05)
+    assert even_depth(sheets, Side.RIGHT, (0.001, 0.001), GRID.toothed) == 0.0
     assert even_part(sheets, frozenset(), (0.001, 0.001), GRID.toothed) == 0.0
     assert even_part(sheets, frozenset({Side.LEFT}), (0.02, 0.02), GRID.toothed) == 0.0
 

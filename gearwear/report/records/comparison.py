@@ -32,7 +32,7 @@ from gearwear.report.records.teeth import mark_record, pattern_values, same_teet
 from gearwear.report.records.views import view_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words, weighed_words
-from gearwear.wear.regions import Wear
+from gearwear.wear.regions import Wear, WearRegion
 
 SCHEMA = "gearwear.report/1"
 
@@ -212,6 +212,11 @@ def _root(root: Root) -> Json:
     }
 
 
+def _less_even(region: WearRegion, even: float) -> Json:
+    """The deepest place without an even loss of its side, where that may be thinner teeth."""
+    return {"max_depth_less_even_um": 1e3 * max(region.max_depth - even, 0.0)} if even > 0.0 else {}
+
+
 def _tip_edge(edge: TipEdge) -> Json:
     """What was found of the edges between flanks and tips."""
     return {"fits_design": edge.fits_design, "height_mm": edge.height, "depth_um": 1e3 * edge.depth}
@@ -337,6 +342,7 @@ def _wear(results: Results) -> Json:
                 size: value_std(region.volume, region.volume_std),
                 "max_depth_um": 1e3 * region.max_depth,
                 "max_depth_std_um": 1e3 * region.max_depth_std,
+                **_less_even(region, results.open_volume.even_depth(region.side)),
                 "mean_depth_um": 1e3 * region.mean_depth,
                 **({} if planar else {"area_mm2": region.area}),
                 "centroid_mm": region.centroid.tolist(),

@@ -100,7 +100,7 @@ def broken_words(results: Results) -> str:
 def _wear_found(results: Results) -> str:
     wear, worst = results.wear, results.wear.deepest
     assert worst is not None
-    place, depth = which_flanks([worst]), _depth(worst.max_depth)
+    place, depth = which_flanks([worst]), deepest_range(results, worst) or _depth(worst.max_depth)
     where = which_flanks(wear.regions, results.gear.teeth)
     text = f"{_lost(results)} is gone from {where}"
     if wear.volume < NORMAL_95 * wear.volume_std:
@@ -185,6 +185,16 @@ def depth_words(region: WearRegion, unit: str = "µm") -> str:
     if math.isfinite(region.max_depth_std) and region.max_depth_std > 0.0:
         return with_std(1e3 * region.max_depth, 1e3 * region.max_depth_std, unit)
     return SPACE.join(filter(None, (number(1e3 * region.max_depth, 0), unit)))
+
+
+def deepest_range(results: Results, worst: WearRegion) -> str:
+    """Between what the deepest place lies where an even loss of its side may be thinner teeth, its own 95 % with it; "" where it may not."""
+    even = results.open_volume.even_depth(worst.side)
+    if even <= 0.0:
+        return ""
+    own = NORMAL_95 * worst.max_depth_std
+    ends = (max(worst.max_depth - even - own, 0.0), worst.max_depth + own)
+    return f"{number(1e3 * ends[0], 0)} to {number(1e3 * ends[1], 0)}{SPACE}µm"
 
 
 def _depth(depth: float) -> str:
@@ -378,7 +388,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
     worst = wear.deepest
     if worst is not None:
         where = f"tooth {worst.tooth + 1}, {worst.side} flank{'' if planar else ', mean of 0.5 × 0.5 mm'}"
-        key.append(KeyFigure("Deepest wear", depth_words(worst), where))
+        key.append(KeyFigure("Deepest wear", deepest_range(results, worst) or depth_words(worst), where))
     tooth = wear.thinnest
     if tooth is not None:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
