@@ -53,12 +53,13 @@ def test_where_a_bevel_begins_and_how_deep_it_is(flank, land, slid):
         lambda: points(),
         lambda: points(SlidingWear(150.0, 1)),
         lambda: points(SlidingWear(80.0, 1), SlidingWear(60.0, -1)),
-        lambda: points(effects=(("tip_relief", (("amount_um", 60.0), ("start_mm", 13.5))),)),
+        lambda: points(effects=(("tip_relief", (("amount_um", 120.0), ("start_mm", 13.5))),)),
         lambda: bevelled(points(), NUMBERS, 0.45, 0.45, np.arange(40).reshape(20, 2) % 2 == 0),
         lambda: bevelled(points(), NUMBERS, 0.45, 0.45, np.arange(40).reshape(20, 2) % 4 > 1),
         lambda: bevelled(points(), NUMBERS, 0.05, 0.05),
+        lambda: bevelled(points(), NUMBERS, 0.3, 0.05),
     ],
-    ids=["none", "one side slid", "both sides slid", "tip relief", "one side's", "every second tooth's", "small"],
+    ids=["none", "one side slid", "both sides slid", "tip relief", "one side's", "every second tooth's", "small", "shallow"],
 )
 def test_what_is_no_edge_of_all_flanks(cloud):
     edge = found(cloud())
