@@ -53,7 +53,7 @@ def test_where_a_bevel_begins_and_how_deep_it_is(flank, land, slid):
         lambda: points(),
         lambda: points(SlidingWear(150.0, 1)),
         lambda: points(SlidingWear(80.0, 1), SlidingWear(60.0, -1)),
-        lambda: points(effects=(("tip_relief", (("amount_um", 120.0), ("start_mm", 13.5))),)),
+        lambda: points(effects=(("tip_relief", (("amount_um", 65.0), ("start_mm", 16.0))),)),
         lambda: bevelled(points(), NUMBERS, 0.45, 0.45, np.arange(40).reshape(20, 2) % 2 == 0),
         lambda: bevelled(points(), NUMBERS, 0.45, 0.45, np.arange(40).reshape(20, 2) % 4 > 1),
         lambda: bevelled(points(), NUMBERS, 0.05, 0.05),
