@@ -226,7 +226,7 @@ class MeasuredGear(Card):
             smoothing = (VIEWS_MAY_LIE_APART,)
         sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
         told = None if self.mark is None else self.mark.sentence
-        return (*sample, *smoothing, *filter(None, [self.root.words(), self.tip_edge.words(), told]), *self.design.datum.words)
+        return (*sample, *smoothing, *filter(None, [self.tip_edge.words(), self.root.words(), told]), *self.design.datum.words)
 
     @property
     def points(self) -> int:

@@ -311,7 +311,8 @@ COAT = Effect("coating", {"thickness_um": 25.0})
 @pytest.mark.long
 @pytest.mark.parametrize(("coat_before", "coat_after"), [(False, True), (True, True)])
 def test_against_a_scan_before_wear(folder, coat_before, coat_after):
-    """What both scans share cancels, and a coat in one of them only is no wear: volume is lost to it only there."""
+    """What both scans share cancels, and a coat in one of them only is no wear. Left in, it hides a third of the volume; with the levels that flanks then
+    stand at in its ±, what is told holds the truth all the same."""
     after, scan = scan_file(folder, "after", replace(TEXTURED, effects=(COAT,) * coat_after), 2)
     before, _ = scan_file(folder, "before", replace(TEXTURED, wear=(), effects=(COAT,) * coat_before), 3)
     results = compare(ALONE, after, before=before, inspection=False)
@@ -319,8 +320,9 @@ def test_against_a_scan_before_wear(folder, coat_before, coat_after):
     assert results.wear.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
     assert results.before_files == (str(before[0]),)
     (change,) = (change for change in results.changes if change.name == "worn_volume_mm3")
-    assert change.matters is not coat_before
-    assert [name for name, _ in change.causes] == ([] if coat_before else ["coating"])
+    hidden = change.after - change.before
+    assert abs(hidden) < 0.05 if coat_before else 0.25 * change.after < hidden < 2.0 * change.std
+    assert not change.matters and change.causes == ()
     worst = max(results.wear.thickness.teeth(), key=lambda tooth: tooth.greatest_loss)
     lost = scan.truth.flanks[0].thickness_loss_mm
     assert worst.tooth == 1
