@@ -82,11 +82,13 @@ class TestCoat:
         assert abs(change.difference) < 0.02 * COAT_UM
 
     def test_it_hid_wear(self, coated):
+        """A third of it; what is told with the coat left in has the levels of its flanks in its ±, and holds the truth."""
         changes = by_name(coated)
         volume, deepest = changes["worn_volume_mm3"], changes["deepest_wear_um"]
-        assert volume.before < volume.after == coated.wear.volume
+        assert 0.0 < volume.before < 0.75 * volume.after and volume.after == coated.wear.volume
+        assert volume.difference < 2.0 * volume.std
         assert deepest.after == pytest.approx(PATCH.depth_um, abs=3.0 * deepest.std)
-        assert volume.matters and [name for name, _ in volume.causes] == ["coating"]
+        assert deepest.matters and [name for name, _ in deepest.causes] == ["coating"]
 
     def test_what_comes_after_is_what_the_report_says_elsewhere(self, coated):
         report = document(coated, [])
