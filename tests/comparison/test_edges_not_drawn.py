@@ -1,0 +1,71 @@
+"""Chamfered tips that the drawing does not have: no wear, no effect, and no loss between two scans of one gear."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gearwear.comparison.stations import compare
+from gearwear.design import read_design
+from gearwear.design.side import Side
+from tests.synthetic import GearNumbers, Recipe, SlidingWear, Texture, make_scan
+from tests.synthetic.edges import bevelled, height_of
+from tests.synthetic.outline import Outline
+
+NUMBERS = GearNumbers(20, 3.0, 20.0, 20.0, 0.1)
+FLANK, LAND = 0.5, 0.4
+SLID = SlidingWear(60.0, 1)
+DESIGN = "[gear]\nteeth = 20\nmodule = 3.0\nface_width = 20.0\nprofile_shift = 0.1\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("edges")
+    (folder / "design.toml").write_text(DESIGN)
+    return folder
+
+
+def written(folder, name: str, seed: int, *wear: SlidingWear):
+    """A scan in the design's frame with all of its tips chamfered, as text; and what wear took from flanks below the bevels, mm³."""
+    recipe = Recipe(gear=NUMBERS, jitter=1.0, noise_um=6.0, texture=Texture(2.0, 1.0), wear=wear, pose="none").of_size(60_000)
+    scan = make_scan(recipe, seed)
+    file = folder / f"{name}.xyz"
+    file.write_text("\n".join(f"{x:.4f} {y:.4f} {z:.4f}" for x, y, z in bevelled(scan.points, NUMBERS, FLANK, LAND)))
+    return file, scan
+
+
+@pytest.fixture(scope="module")
+def unworn(folder):
+    return written(folder, "unworn", 1)[0]
+
+
+def test_it_is_found_and_no_wear_nor_any_effect(folder, unworn):
+    results = compare(read_design(folder / "design.toml"), [unworn], inspection=False)
+    assert results.wear.regions == () and results.effects == ()
+    edge = results.measured.tip_edge
+    assert edge.height == pytest.approx(height_of(NUMBERS, FLANK), abs=0.1)
+    assert edge.words() in results.measured.notes
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("before", [False, True])
+def test_wear_of_a_side_is_that_below_the_bevels(folder, unworn, before):
+    """What the law takes off the flank up to where the bevel begins, by ∫ d L / r_b dL, 0.83 of all; what it takes off the bevels is not in the volume."""
+    file, scan = written(folder, f"slid {before}", 2, SLID)
+    results = compare(read_design(folder / "design.toml"), [file], before=[unworn] if before else (), inspection=False)
+    assert {region.side for region in results.wear.regions} == {Side.LEFT}
+    outline = Outline.of(NUMBERS)
+    roll = np.linspace(outline.form_roll, outline.tip_roll, 20_001)
+    taken = (
+        SLID.depth(outline, np.zeros(len(roll), dtype=int), np.ones(len(roll), dtype=int), roll, np.full(len(roll), 10.0)) * roll
+    )
+    below = np.hypot(roll, outline.base_radius) < outline.tip_radius - height_of(NUMBERS, FLANK)
+    expected = scan.truth.volume_mm3 * float(taken[below].sum() / taken.sum())
+    assert abs(results.wear.volume - expected) < 2.0 * results.wear.found.volume_std < 0.1 * expected
+
+
+@pytest.mark.long
+def test_between_two_scans_nothing_is_lost(folder, unworn):
+    again, _ = written(folder, "again", 3)
+    results = compare(read_design(folder / "design.toml"), [again], before=[unworn], inspection=False)
+    assert results.wear.regions == ()
