@@ -12,6 +12,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.collecting import Cut
+from gearwear.comparison.laying import laid_on, unstated_root
 from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.own_tips import on_its_tips, on_tips_of
 from gearwear.comparison.passes import Streamed, first_pass
@@ -23,7 +24,7 @@ from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
-from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints
+from gearwear.design.surface import FLANK, OTHER, SURFACE_NAMES, SurfacePoints
 from gearwear.design.twist import Toothing, drawn_height, refuse
 from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
@@ -37,7 +38,7 @@ from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.strays import near_centre
 from gearwear.placing.tip_edge import TipEdge
-from gearwear.placing.views import PlacedScan, place, turned
+from gearwear.placing.views import PlacedScan, turned
 from gearwear.scan.types import Scan
 from gearwear.scan.views import views_of
 from gearwear.threads import on_one_thread
@@ -326,12 +327,11 @@ class MeasuredGear(Card):
         """The cells without measurement, manufacture and unexplained structure: what is left is wear and noise."""
         unexplained = np.zeros(len(self.cells.count))
         if self.loop is not None:
-            unexplained = np.sum([unexplained, *(pattern.field for pattern in self.loop.patterns)], axis=0)
+            made = (*(pattern.field for pattern in self.loop.patterns), UntoldFlanks.of(self.cells, self.loop).raised)
+            unexplained = np.sum([unexplained, *made], axis=0)
         elif not self.root.fits_design:  # what all fillets have is how they were made, as the loop has it
             unexplained = common_fillet(self.cells)
         corrected = self.corrected
-        if self.loop is not None:
-            unexplained += UntoldFlanks.of(self.cells, self.loop).raised
         return corrected.with_deviation(corrected.points.deviation - self.manufacture - unexplained)
 
     def _part_of(self, kinds: frozenset[Kind]) -> Floats:
@@ -410,8 +410,7 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
 
 
 def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, motion: Pose) -> PlacedScan:
-    views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
-    return place(views, root.gear, normals, planar, turned(placed, motion), no_datum(root))
+    return laid_on(root.gear, scans, planar, no_datum(root), turned(placed, motion))
 
 
 def _in_cells(
@@ -445,9 +444,14 @@ def _in_cells(
         first = with_pits(placed.located, grid)
     else:
         borders = Borders(grid, placed.registration.noise, tuple((tooth, points[index]) for tooth, index in fractures), broken)
-        unknown = frozenset[int]() if design.gears[name].root_stated else frozenset({FILLET, ROOT})
         placed, streamed = first_pass(
-            chunks, placed, borders, grid, clip_of(placed.located), SectionBand.of(gear), no_datum(root) or unknown
+            chunks,
+            placed,
+            borders,
+            grid,
+            clip_of(placed.located),
+            SectionBand.of(gear),
+            no_datum(root) or unstated_root(design.gears[name]),
         )
         first = streamed.first.cells
     context = _context(first, placed, design, name, planar)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from gearwear.comparison.laying import ROOT_SURFACES, laid_on
 from gearwear.design.gear import Gear
-from gearwear.design.surface import FILLET, ROOT, locate
+from gearwear.design.surface import locate
 from gearwear.placing.proportion import common_ratio
 from gearwear.placing.root import Root, fit_root
-from gearwear.placing.views import PlacedScan, place
+from gearwear.placing.views import PlacedScan
 from gearwear.scan.types import Scan
 from gearwear.wear.breakage import on_whole_teeth
 
@@ -34,15 +35,14 @@ def on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: b
     for _ in range(ROOT_PASSES):
         if root.fits_design:
             break
-        views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
-        placed = place(views, root.gear, normals, planar, placed, no_datum(root))
+        placed = laid_on(root.gear, scans, planar, no_datum(root), placed)
         root = _of_whole_teeth(placed, gear, planar)
     return placed, root
 
 
 def no_datum(root: Root) -> frozenset[int]:
     """Surfaces that are no datum."""
-    return frozenset({FILLET, ROOT}) if root.free else frozenset()
+    return ROOT_SURFACES if root.free else frozenset()
 
 
 def _of_whole_teeth(placed: PlacedScan, gear: Gear, planar: bool) -> Root:

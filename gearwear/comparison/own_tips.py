@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from gearwear.comparison.laying import laid_on, unstated_root
 from gearwear.design.gear import Gear
-from gearwear.design.surface import FILLET, ROOT
 from gearwear.placing.tip_edge import TipEdge, fit_tip_edge
-from gearwear.placing.views import PlacedScan, place
+from gearwear.placing.views import PlacedScan
 from gearwear.scan.types import Scan
 
 EDGE_PASSES = 2
@@ -33,7 +33,7 @@ def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: b
     for _ in range(EDGE_PASSES):
         if edge.fits_design:
             break
-        placed = _placed_on(edge.gear, placed, scans, planar)
+        placed = laid_on(edge.gear, scans, planar, unstated_root(edge.gear), placed)
         again = fit_tip_edge(placed.located, gear, placed.registration.noise)
         if again.fits_design or again.height == edge.height:
             break
@@ -44,13 +44,7 @@ def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: b
 def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, TipEdge]:
     """The same with the edges of another gear, as the same one has after wear."""
     edge = {key: getattr(other.spec, key) for key in ("tip_chamfer", "tip_chamfer_land", "tip_rounding")}
+    if all(getattr(gear.spec, key) == value for key, value in edge.items()):
+        return placed, TipEdge(gear)
     own = Gear.from_spec(replace(gear.spec, **edge))
-    return (
-        (placed, TipEdge(gear)) if own == gear else (_placed_on(own, placed, scans, planar), TipEdge(own, other.spec.tip_chamfer))
-    )
-
-
-def _placed_on(gear: Gear, placed: PlacedScan, scans: Sequence[Scan], planar: bool) -> PlacedScan:
-    """The scans laid on a gear, from where they are."""
-    unknown = frozenset[int]() if gear.root_stated else frozenset({FILLET, ROOT})
-    return place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar, placed, unknown)
+    return laid_on(own, scans, planar, unstated_root(own), placed), TipEdge(own, other.spec.tip_chamfer)

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from gearwear.comparison.laying import laid_on, unstated_root
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.surface import FILLET, ROOT
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.refusal import check_gear
-from gearwear.placing.views import PlacedScan, place
+from gearwear.placing.views import PlacedScan
 from gearwear.scan.types import Scan
 from gearwear.scan.units import READ_WITH, check_size, extents, other_unit, outer_diameter
 
@@ -31,19 +31,18 @@ def by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
 
 def placed_as(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, Gear, PlacedScan]:
     """The first of these parts that the scans fit, its gear as wide as they are, and how they lie on it; else what kept them from the first."""
-    points, normals, refused = [scan.points for scan in scans], [scan.normals for scan in scans], []
+    refused = []
     for name in parts:
         gear = design.gears[name]
         try:
             for scan in scans:
                 check_size(scan, gear)
-            unknown = frozenset[int]() if gear.root_stated else frozenset({FILLET, ROOT})
-            placed = place(points, gear, normals, planar, ignore=unknown)
+            placed = laid_on(gear, scans, planar, unstated_root(gear))
             width = check_gear(placed, gear)
             if width == gear.face_width:
                 return name, gear, placed
             gear = Gear.from_spec(replace(gear.spec, face_width=width))
-            return name, gear, place(points, gear, normals, planar, ignore=unknown)
+            return name, gear, laid_on(gear, scans, planar, unstated_root(gear))
         except InputError as error:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])

@@ -101,7 +101,8 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
     flanks, their slopes and reliefs are in no slope of that size.
     """
     m, way = gear.transverse_module, gear.orientation
-    flank = _on_sharp(located, gear)
+    points = _near_tips(located, gear)
+    flank = _on_sharp(points, gear)
     height = way * (gear.tip_radius - np.hypot(flank.measured[:, 0], flank.measured[:, 1]))
     if len(height) < LEAST_IN_BIN:
         return TipEdge(gear)
@@ -122,7 +123,7 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
     if depth < LEAST_DEPTH or begins <= known + AS_DRAWN * m or not _of_all(flank, height, first, begins, depth):
         return TipEdge(gear)
     # Where the land is not seen to end, it ends 45° up from where the flank does.
-    land = _land(located, gear, top)
+    land = _land(points, gear, top)
     half = float(gear.half_angle(gear.tip_radius - way * begins))
     leg = None if land is None else max(half * gear.tip_radius - land + BEFORE * STEP * m, 0.0)
     try:
@@ -133,37 +134,35 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
     return TipEdge(ends, begins, gear.base_radius * (float(gear.half_angle(gear.tip_radius)) - ends_at))
 
 
-def _land(located: SurfacePoints, gear: Gear, top: float) -> float | None:
+def _near_tips(located: SurfacePoints, gear: Gear) -> Floats:
+    """(n, 3) points of tips and of what is next to them, mm; those next to the ends apart."""
+    points, m = located.measured, gear.transverse_module
+    margin = max(0.05 * m, gear.spec.end_edge)
+    near = np.isin(located.surface, (FLANK, TIP, OTHER))
+    near &= gear.orientation * (gear.tip_radius - np.hypot(points[:, 0], points[:, 1])) < (REACH + 0.2) * m
+    near &= (points[:, 2] > margin) & (points[:, 2] < gear.face_width - margin)
+    return np.asarray(points[near], dtype=np.float64)
+
+
+def _land(points: Floats, gear: Gear, top: float) -> float | None:
     """Half the width of the lands of all teeth, mm along the tip circle: as far out as their points lie no lower than `top` mm below the tip, as those in
     the middle do; None where too few are seen."""
-    m, points = gear.transverse_module, located.measured
-    near = np.isin(located.surface, (FLANK, TIP, OTHER)) & (points[:, 2] > 0.05 * m) & (points[:, 2] < gear.face_width - 0.05 * m)
-    points = points[near]
+    m, half = gear.transverse_module, float(gear.half_angle(gear.tip_radius)) * gear.tip_radius
     height = gear.orientation * (gear.tip_radius - np.hypot(points[:, 0], points[:, 1]))
-    angle = section_angle(gear, *points.T)
-    across = gear.tip_radius * np.abs(np.remainder(angle + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle)
-    edges = np.asarray(
-        STEP * m * np.arange(int(float(gear.half_angle(gear.tip_radius)) * gear.tip_radius / (STEP * m)) + 1), dtype=np.float64
-    )
+    angle = np.remainder(section_angle(gear, *points.T) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
+    edges = np.asarray(STEP * m * np.arange(int(half / (STEP * m)) + 1), dtype=np.float64)
     on = height < top + REACH * m
-    profile = _medians(across[on], -height[on], edges)
+    profile = _medians(gear.tip_radius * np.abs(angle[on]), -height[on], edges)
     middle = float(np.nanmedian(profile[: max(len(profile) // 4, 1)])) if np.isfinite(profile).any() else math.nan
     low = np.flatnonzero(profile < middle - DEPARTED)
     return float(edges[low[0]]) if math.isfinite(middle) and len(low) and low[0] > BEFORE else None
 
 
-def _on_sharp(located: SurfacePoints, gear: Gear) -> SurfacePoints:
-    """The points near the tips, on flanks that are drawn up to these, whatever edge the design has; of lands too, which lie deep below."""
-    sharp = Gear.from_spec(replace(gear.spec, tip_chamfer=0.0, tip_rounding=0.0))
-    points, m = located.measured, gear.transverse_module
-    radius = np.hypot(points[:, 0], points[:, 1])
-    near = np.isin(located.surface, (FLANK, TIP, OTHER))
-    near &= gear.orientation * (gear.tip_radius - radius) < (REACH + 0.2) * m
-    margin = max(0.05 * m, gear.spec.end_edge)
-    near &= (points[:, 2] > margin) & (points[:, 2] < gear.face_width - margin)
+def _on_sharp(points: Floats, gear: Gear) -> SurfacePoints:
+    """Points near the tips on flanks that are drawn up to these, whatever edge the design has; of lands too, which lie deep below."""
+    sharp = Gear.from_spec(replace(gear.spec, tip_chamfer=0.0, tip_chamfer_land=None, tip_rounding=0.0))
     never = (math.inf, math.inf)
-    bands = replace(Bands.wide(sharp), tip=never, end_low=never, end_high=never)
-    found = locate(points[near], sharp, bands)
+    found = locate(points, sharp, replace(Bands.wide(sharp), tip=never, end_low=never, end_high=never))
     return found.take(found.surface == FLANK)
 
 

@@ -50,9 +50,10 @@ class UntoldFlanks:
         share = np.bincount(which[on], loop.use[on], minlength=flanks) / np.maximum(number, 1)
         worn = np.isin(np.arange(flanks) % len(Side), [side.index for side in loop.worn_sides])
         hidden = np.flatnonzero((number > 0) & (share < TOLD) & ~worn)
-        raised, columns, amounts = np.zeros(len(flank)), *_amounts(cells, loop)
-        if not len(hidden) or not columns.shape[1]:
+        raised = np.zeros(len(flank))
+        if not len(hidden) or not any(effect.candidate.effect.tooth_specific for effect in loop.effects):
             return cls(raised, np.zeros((len(flank), 0)))
+        columns, amounts = _amounts(cells, loop)
         found = (columns * amounts[points.tooth]).sum(axis=1)
         target, used = loop.residual_after + found, np.flatnonzero(loop.use & cells.seen)
 

@@ -327,6 +327,7 @@ def _unexplained(loop: Loop, results: Results) -> Json:
 
 def _wear(results: Results) -> Json:
     wear, planar, unlooped = results.wear.found, results.planar, results.wear.before_loop
+    even = {side: results.open_volume.even_depth(side) for side in Side}
     size = "area_mm2" if planar else "volume_mm3"
     before = {size: _total(unlooped), "regions": len(unlooped.regions)}
     report: Json = {
@@ -342,7 +343,7 @@ def _wear(results: Results) -> Json:
                 size: value_std(region.volume, region.volume_std),
                 "max_depth_um": 1e3 * region.max_depth,
                 "max_depth_std_um": 1e3 * region.max_depth_std,
-                **_less_even(region, results.open_volume.even_depth(region.side)),
+                **_less_even(region, even[region.side]),
                 "mean_depth_um": 1e3 * region.mean_depth,
                 **({} if planar else {"area_mm2": region.area}),
                 "centroid_mm": region.centroid.tolist(),
