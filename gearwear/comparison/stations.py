@@ -61,6 +61,7 @@ from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, signed_difference, worn_volume
 from gearwear.wear.thickness import SectionThickness, thickness_of
+from gearwear.wear.untold import UntoldFlanks
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
@@ -413,9 +414,10 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
         return np.asarray(gear.arc_per_depth * np.sum([of(flank) for flank in flanks], axis=0).reshape(gear.teeth, -1))
 
     other = [float(arc(partial(loop.as_other, effect)).mean()) for effect in loop.either]
+    untold = gear.arc_per_depth * UntoldFlanks.of(measured.cells, loop).level.sum(axis=1, keepdims=True)
     # Between the places that were measured a tooth is as thin as it was made, and no thinner for what the scanner may have done.
     return replace(
-        result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE))), made=arc(loop.surely_made),
+        result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE)) + untold), made=arc(loop.surely_made) + untold,
         otherwise=(sum(min(change, 0.0) for change in other), sum(max(change, 0.0) for change in other)),
     )  # fmt: skip
 

@@ -28,14 +28,17 @@ class UntoldFlanks:
 
     Parameters
     ----------
+    level : (teeth, 2) float
+        By how much left and right flanks stand higher as made than the loop has it, mm: as the rest of their tooth has them, and no tooth's amount is what the
+        sum of the others leaves for it.
     raised : (m,) float
-        By how much their cells stand higher as made than the loop has it, mm: as the rest of their tooth has them, and no tooth's amount is what the sum of the
-        others leaves for it.
+        The same of the cells of flanks.
     fields : (m, k) float
         How high each may stand besides, mm, even all over it: the RMS by which sound flanks, each left out in turn, stand off where the rest of their
         tooth has them.
     """
 
+    level: Floats
     raised: Floats
     fields: Floats
 
@@ -50,9 +53,9 @@ class UntoldFlanks:
         share = np.bincount(which[on], loop.use[on], minlength=flanks) / np.maximum(number, 1)
         worn = np.isin(np.arange(flanks) % len(Side), [side.index for side in loop.worn_sides])
         hidden = np.flatnonzero((number > 0) & (share < TOLD) & ~worn)
-        raised = np.zeros(len(flank))
+        level, raised = np.zeros((cells.grid.gear.teeth, len(Side))), np.zeros(len(flank))
         if not len(hidden) or not any(effect.candidate.effect.tooth_specific for effect in loop.effects):
-            return cls(raised, np.zeros((len(flank), 0)))
+            return cls(level, raised, np.zeros((len(flank), 0)))
         columns, amounts = _amounts(cells, loop)
         found = (columns * amounts[points.tooth]).sum(axis=1)
         target, used = loop.residual_after + found, np.flatnonzero(loop.use & cells.seen)
@@ -66,12 +69,13 @@ class UntoldFlanks:
         for k in hidden:
             own = flank & (which == k)
             raised[own] = (columns[own] @ amount(int(k))) - found[own]
+            level[divmod(int(k), len(Side))] = raised[own].mean()
         off = []
         for k in np.flatnonzero((share > SOUND) & ~worn):
             rows = used[(flank & (which == k))[used]]
             off.append(np.average(target[rows] - columns[rows] @ amount(int(k)), weights=weight[rows]))
         rms = math.sqrt(float(np.mean(np.square(off)))) if off else 0.0
-        return cls(raised, (flank[:, None] & (which[:, None] == hidden)) * rms)
+        return cls(level, raised, (flank[:, None] & (which[:, None] == hidden)) * rms)
 
 
 def _amounts(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
