@@ -53,7 +53,6 @@ from gearwear.wear.breakage import (
     with_borders,
 )
 from gearwear.wear.section_sums import SectionBand, SectionSums
-from gearwear.wear.untold import UntoldFlanks
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
@@ -327,7 +326,8 @@ class MeasuredGear(Card):
         """The cells without measurement, manufacture and unexplained structure: what is left is wear and noise."""
         unexplained = np.zeros(len(self.cells.count))
         if self.loop is not None:
-            made = (*(pattern.field for pattern in self.loop.patterns), UntoldFlanks.of(self.cells, self.loop).raised)
+            untold = self.loop.untold
+            made = (*(pattern.field for pattern in self.loop.patterns), *([] if untold is None else [untold.raised]))
             unexplained = np.sum([unexplained, *made], axis=0)
         elif not self.root.fits_design:  # what all fillets have is how they were made, as the loop has it
             unexplained = common_fillet(self.cells)

@@ -61,7 +61,6 @@ from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, signed_difference, worn_volume
 from gearwear.wear.thickness import SectionThickness, thickness_of
-from gearwear.wear.untold import UntoldFlanks
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
@@ -414,7 +413,7 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
         return np.asarray(gear.arc_per_depth * np.sum([of(flank) for flank in flanks], axis=0).reshape(gear.teeth, -1))
 
     other = [float(arc(partial(loop.as_other, effect)).mean()) for effect in loop.either]
-    untold = gear.arc_per_depth * UntoldFlanks.of(measured.cells, loop).level.sum(axis=1, keepdims=True)
+    untold = 0.0 if loop.untold is None else gear.arc_per_depth * loop.untold.level.sum(axis=1, keepdims=True)
     # Between the places that were measured a tooth is as thin as it was made, and no thinner for what the scanner may have done.
     return replace(
         result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE)) + untold), made=arc(loop.surely_made) + untold,

@@ -104,6 +104,27 @@ class FoundEffect(Card):
         return rows + ([("not told from", ", ".join(self.alternatives))] if self.alternatives else [])
 
 
+@dataclass(frozen=True, slots=True)
+class UntoldFlanks:
+    """Flanks that tell nothing of their own level.
+
+    Parameters
+    ----------
+    level : (teeth, 2) float
+        By how much left and right flanks stand higher as made than the effects have it, mm: as the rest of their tooth has them, and no tooth's amount is what
+        the sum of the others leaves for it.
+    raised : (m,) float
+        The same of the cells of flanks.
+    fields : (m, k) float
+        How high each may stand besides, mm, even all over it: the RMS by which sound flanks, each left out in turn, stand off where the rest of their
+        tooth has them.
+    """
+
+    level: Floats
+    raised: Floats
+    fields: Floats
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Loop(Card):
     """The closed loop.
@@ -147,6 +168,8 @@ class Loop(Card):
         Between the sizes of different effects, the strongest first.
     worn_flanks : (teeth, 2) bool or None
         Single flanks that are worn all over, and were left out; None where none had to be.
+    untold : UntoldFlanks or None
+        Flanks that are no datum where every tooth has amounts of its own; None where each is.
     """
 
     effects: tuple[FoundEffect, ...]
@@ -171,6 +194,7 @@ class Loop(Card):
     others: tuple[Loop, ...] = ()
     correlations: tuple[Correlation, ...] = ()
     worn_flanks: Bools | None = None
+    untold: UntoldFlanks | None = None
 
     @property
     def undecided(self) -> tuple[frozenset[Side], ...]:

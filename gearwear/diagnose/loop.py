@@ -30,6 +30,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.diagnose.told_by_wear import told_by_wear
+from gearwear.diagnose.untold import with_untold
 from gearwear.diagnose.worn_flanks import worn_flanks
 from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
 from gearwear.placing.cells import Cells
@@ -129,7 +130,7 @@ def close_loop(
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
-        return replace(loop, worn_flanks=low if apart.any() else None)
+        return with_untold(replace(loop, worn_flanks=low if apart.any() else None), cells)
 
     taken = explained(costs.chosen)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))

@@ -15,6 +15,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.found import Loop
 from gearwear.diagnose.masks import sound_cells
+from gearwear.diagnose.untold import with_untold
 from gearwear.placing.cells import CellGrid, Cells
 
 ENOUGH_CELLS = 16_000
@@ -115,5 +116,6 @@ def carried(loop: Loop, pooled: Cells, cells: Cells, noise: float) -> Loop:
         hidden=None if loop.hidden is None else on_cells(loop.hidden),
         made=None if loop.made is None else on_cells(loop.made),
         others=tuple(carried(other, pooled, cells, noise) for other in loop.others),
+        untold=None,
     )
-    return replace(whole, covariance=estimate_covariance(cells, whole.left, use, noise))
+    return with_untold(replace(whole, covariance=estimate_covariance(cells, whole.left, use, noise)), cells)

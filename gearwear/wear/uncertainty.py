@@ -26,7 +26,6 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
 from gearwear.placing.side_maps import SideMaps
-from gearwear.wear.untold import UntoldFlanks
 from gearwear.wear.weights import SideWeights, by_side
 
 BEYOND_CHANCE = 3.0
@@ -120,7 +119,7 @@ class CellErrors:
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         weighted = columns * weight[:, None]
         through = covariance.apply(weighted)
-        hidden = [fields, *([] if loop.hidden is None else [loop.hidden]), UntoldFlanks.of(cells, loop).fields]
+        hidden = [fields, *([] if loop.hidden is None else [loop.hidden]), *([] if loop.untold is None else [loop.untold.fields])]
         return cls(covariance, columns, inverse, through, weighted.T @ through, np.hstack(hidden))
 
     def covariance_of(self, weights: Floats | SideWeights) -> Floats:

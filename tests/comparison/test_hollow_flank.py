@@ -7,8 +7,8 @@ import pytest
 
 from gearwear.comparison.stations import compare
 from tests.commands.doors import ALONE, scan_file
+from tests.diagnose.test_untold import HOLLOW, TOOTH
 from tests.synthetic import Effect, Recipe
-from tests.wear.test_untold import HOLLOW, TOOTH
 
 
 @pytest.mark.long
