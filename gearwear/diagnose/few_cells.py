@@ -42,8 +42,7 @@ def few_rows(grid: CellGrid) -> CellGrid:
 
 def few_teeth(grid: CellGrid, points: SurfacePoints) -> Bools:
     """Points on every n-th tooth, and off the teeth, where a grid with few rows has n times as many cells as are needed."""
-    every = max(1, round(grid.count / ENOUGH_CELLS))
-    kept: Bools = (points.tooth % every == 0) | (points.surface > TIP)
+    kept: Bools = (points.tooth % max(1, round(grid.count / ENOUGH_CELLS)) == 0) | (points.surface > TIP)
     return kept
 
 
@@ -59,9 +58,10 @@ def on_few_cells(fit: Fit, sound: Bools, noise: float) -> tuple[Fit, Bools]:
         Scatter of points, mm.
     """
     grid = few_rows(fit.cells.grid)
-    if grid is fit.cells.grid:
+    kept = few_teeth(grid, fit.cells.points)
+    if grid is fit.cells.grid and kept.all():
         return fit, sound
-    rows = np.flatnonzero(sound & few_teeth(grid, fit.cells.points))
+    rows = np.flatnonzero(sound & kept)
     into = np.full(len(sound), -1, dtype=np.int64)
     into[rows] = grid.index(fit.cells.points.take(rows))
     cells = cells_of(fit.cells.sums.gathered(into, grid.count), grid)

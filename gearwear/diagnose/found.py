@@ -168,6 +168,8 @@ class Loop(Card):
         Between the sizes of different effects, the strongest first.
     worn_flanks : (teeth, 2) bool or None
         Single flanks that are worn all over, and were left out; None where none had to be.
+    margin : float
+        By how much other sides worn throughout would cost more; 0 where the costs did not decide.
     untold : UntoldFlanks or None
         Flanks that are no datum where every tooth has amounts of its own; None where each is.
     """
@@ -194,12 +196,18 @@ class Loop(Card):
     others: tuple[Loop, ...] = ()
     correlations: tuple[Correlation, ...] = ()
     worn_flanks: Bools | None = None
+    margin: float = 0.0
     untold: UntoldFlanks | None = None
 
     @property
     def undecided(self) -> tuple[frozenset[Side], ...]:
         """What else may be worn throughout as far as the scan tells."""
         return tuple(other.worn_sides for other in self.others)
+
+    @property
+    def sure_sides(self) -> frozenset[Side] | None:
+        """The sides worn throughout, none or some; None where the scan leaves a doubt of it, or single flanks are worn all over besides."""
+        return self.worn_sides if self.margin > rules().beyond_doubt and self.worn_flanks is None else None
 
     @property
     def as_made_std(self) -> tuple[float, float]:

@@ -26,8 +26,9 @@ FEWEST_ROWS = 16
 """Rows that are left."""
 FEWEST_RINGS = 8
 """Rings of the end faces that are left: what is looked for there is a plane, or as smooth."""
-ROUGH_CELLS, ROUGH_ROWS = 12_000, 6
-"""Cells and rows that tell whether a scan lies far off its design, and how: it is located again then, and the loop closed on `loop_grid`."""
+ROUGH_CELLS, ROUGH_ROWS = 12_000, 8
+"""Cells and rows that tell whether a scan lies far off its design, and how: it is located again then, and the loop closed on `loop_grid`. As many rows as
+which sides are worn throughout is told by (`rows_of_sides`): where that is beyond doubt it is not asked again."""
 WIDER = 1.1
 """Factor by which the columns are made wider at a time."""
 

@@ -331,6 +331,11 @@ class Rules:
         """Cost within which two models cannot be told apart."""
         return self.errors**2
 
+    @property
+    def beyond_doubt(self) -> float:
+        """Cost beyond which an answer need not be asked for again: twice the errors of `close`."""
+        return (2.0 * self.errors) ** 2
+
 
 RULES = Rules()
 """As the program uses them."""

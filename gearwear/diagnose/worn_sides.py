@@ -67,6 +67,12 @@ class SideCosts:
         return NO_SIDE if len(cheapest) == len(Side) and as_likely else cheapest
 
     @property
+    def margin(self) -> float:
+        """By how much the next hypothesis costs more than the chosen one; below 0 where that is not the cheapest."""
+        taken = self.chosen
+        return min((cost for worn, cost in self.by_sides.items() if worn != taken), default=math.inf) - self.by_sides[taken]
+
+    @property
     def not_excluded(self) -> tuple[frozenset[Side], ...]:
         """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one."""
         taken = self.chosen

@@ -8,9 +8,12 @@ import pytest
 from gearwear.comparison.closing import find_effects
 from gearwear.comparison.measured_gear import MeasuredGear, register
 from gearwear.design import Design, Gear, GearSpec
+from gearwear.design.side import Side
 from gearwear.diagnose import pooled
 from gearwear.diagnose.masks import sound_cells
 from gearwear.diagnose.pooled import ENOUGH_CELLS, FEWEST_ROWS, MOST_CELLS, ROUGH_ROWS, loop_grid, rough_grid
+from gearwear.diagnose.rules import rules
+from gearwear.diagnose.worn_sides import SideCosts, side_costs
 from gearwear.placing.cells import CellGrid
 from gearwear.scan.types import Scan
 from tests.synthetic import Effect, GearNumbers, Patch, Recipe, SlidingWear, make_scan
@@ -73,6 +76,29 @@ def test_a_scan_far_off_is_located_alike_by_a_rough_look():
         assert abs(few.parameters[key].value - value.value) <= 0.1 * value.std
     size = few.parameters["amplitude_deg"]
     assert abs(size.value - 0.3) < 3.0 * size.std
+
+
+@pytest.mark.parametrize(("depth", "asked"), [(60.0, 1), (4.0, 2)])
+def test_which_sides_are_worn_is_asked_again_where_there_is_doubt(depth, asked, monkeypatch):
+    """Sliding wear of 60 µm is beyond doubt at the first look, of 4 µm at none."""
+    shares = (1.0, 0.85, 1.15, 0.9, 1.1, 1.05, 0.95, 1.0, 0.87, 1.12, 0.93, 1.08)
+    recipe = Recipe(noise_um=8.0, wear=(SlidingWear(depth, 1, shares),)).of_size(40_000)
+    points = make_scan(recipe, 5).points
+    scan = Scan(points, None, None, "cloud", (), {}, np.zeros(len(points), np.int8))
+    measured = register(Design({"gear": Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0, rack_tip_radius=0.3))}), scan)
+    for name, cells in (("ENOUGH_CELLS", FEWER), ("MOST_CELLS", FEWER), ("ROUGH_CELLS", FEWER // 2)):
+        monkeypatch.setattr(pooled, name, cells)
+    costs = list[SideCosts]()
+
+    def counted(*asked):
+        costs.append(side_costs(*asked))
+        return costs[-1]
+
+    monkeypatch.setattr("gearwear.diagnose.loop.side_costs", counted)
+    found = find_effects(measured)
+    assert len(costs) == asked
+    assert all((one.margin > rules().beyond_doubt) == (asked == 1) for one in costs)
+    assert depth < 10.0 or found.loop.worn_sides == frozenset({Side.LEFT})
 
 
 @pytest.fixture(scope="module")
