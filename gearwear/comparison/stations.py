@@ -422,7 +422,11 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
 
 
 def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear) -> SectionThickness:
-    """The same measurement with what pooled sections of worn teeth hide."""
+    """The same measurement with what pooled sections of worn teeth hide, and how well is known how thick each was made."""
+    variance = np.tile(np.square(wear.apart), (len(thickness.arc), 1))
+    if measured.loop is not None and measured.loop.untold is not None:
+        variance += measured.loop.untold.level_std**2
+    thickness = replace(thickness, made_std=thickness.turn * np.sqrt(variance.sum(axis=1)))
     if measured.planar:
         return thickness
     corrected = measured.corrected

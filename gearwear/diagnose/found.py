@@ -110,9 +110,9 @@ class UntoldFlanks:
 
     Parameters
     ----------
-    level : (teeth, 2) float
+    level, level_std : (teeth, 2) float
         By how much left and right flanks stand higher as made than the effects have it, mm: as the rest of their tooth has them, and no tooth's amount is what
-        the sum of the others leaves for it.
+        the sum of the others leaves for it; and how well that is known.
     raised : (m,) float
         The same of the cells of flanks.
     fields : (m, k) float
@@ -121,6 +121,7 @@ class UntoldFlanks:
     """
 
     level: Floats
+    level_std: Floats
     raised: Floats
     fields: Floats
 

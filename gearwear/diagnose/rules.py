@@ -95,6 +95,20 @@ class Rules:
     known_flank: float = rule(
         0.5, "usual cells", "tuned, scans not recorded", "share of the cells of a flank from which on its level is known", off=0.0
     )
+    untold_flank: float = rule(
+        0.1,
+        "1",
+        "tuned: ground gears with a hollow flank",
+        "share of a flank's cells that the fit used, below which it is none's datum",
+        off=0.0,
+    )
+    sound_flank: float = rule(
+        0.3,
+        "1",
+        "tuned: ground gears with a hollow flank",
+        "and above which it may be left out in turn to see what the rest of its tooth tells of it",
+        off=0.0,
+    )
     rows_of_sides: int = rule(
         8,
         "rows",

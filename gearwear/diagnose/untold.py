@@ -16,10 +16,8 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
 from gearwear.diagnose.effects.each_tooth import EachTooth
 from gearwear.diagnose.found import FoundEffect, Loop, UntoldFlanks
+from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells
-
-TOLD, SOUND = 0.1, 0.3
-"""Share of a flank's cells that the fit used, below which it is none's datum, and above which it may be left out in turn to see what the others tell of it."""
 
 
 def with_untold(loop: Loop, cells: Cells) -> Loop:
@@ -39,9 +37,12 @@ def with_untold(loop: Loop, cells: Cells) -> Loop:
     number = np.bincount(which[on], minlength=flanks)
     share = np.bincount(which[on], loop.use[on], minlength=flanks) / np.maximum(number, 1)
     worn = np.isin(np.arange(flanks) % len(Side), [side.index for side in loop.worn_sides])  # `made` is their doubt
-    hidden = np.flatnonzero((number > 0) & (share < TOLD) & ~worn)
+    hidden, sound = (
+        np.flatnonzero((number > 0) & (share < rules().untold_flank) & ~worn),
+        np.flatnonzero((share > rules().sound_flank) & ~worn),
+    )
     own = [i for i, found in enumerate(loop.effects) if isinstance(found.candidate.effect, EachTooth)]
-    if not len(hidden) or not own:
+    if not (len(hidden) and len(sound) and own):
         return loop
     columns, amounts = _amounts(cells, loop, [loop.effects[i] for i in own])
     found = (columns * amounts[points.tooth]).sum(axis=1)
@@ -54,33 +55,27 @@ def with_untold(loop: Loop, cells: Cells) -> Loop:
         told = columns[rows] * root[:, None]
         return np.linalg.lstsq(told, target[rows] * root)[0], np.linalg.eigh(told.T @ told)[1][:, 0]
 
-    off, sound = [], np.flatnonzero((share > SOUND) & ~worn)
-    for k in sound:
+    off = []
+    for k in map(int, sound):
         rows = used[(flank & (which == k))[used]]
-        off.append(np.average(target[rows] - columns[rows] @ rest(int(k))[0], weights=weight[rows]))
-    rms = math.sqrt(float(np.mean(np.square(off)))) if off else 0.0
-    level, raised, fields = (
-        np.zeros((cells.grid.gear.teeth, len(Side))),
-        np.zeros(len(flank)),
-        np.zeros((len(flank), len(hidden))),
-    )
-    effects, scatter = (
-        list(loop.effects),
-        np.sqrt(np.mean(amounts[sound // len(Side)] ** 2, axis=0)) if len(sound) else np.zeros(len(own)),
-    )
-    for field, k in zip(fields.T, hidden, strict=True):
-        tooth, side = divmod(int(k), len(Side))
-        on = np.flatnonzero(flank & (which == k))
-        told, free = rest(int(k))
+        off.append(np.average(target[rows] - columns[rows] @ rest(k)[0], weights=weight[rows]))
+    rms = math.sqrt(float(np.mean(np.square(off))))
+    raised, (level, level_std) = np.zeros(len(flank)), np.zeros((2, cells.grid.gear.teeth, len(Side)))
+    effects, scatter = list(loop.effects), np.sqrt(np.mean(amounts[sound // len(Side)] ** 2, axis=0))
+    for k in map(int, hidden):
+        at, on = (k // len(Side), k % len(Side)), np.flatnonzero(flank & (which == k))
+        told, free = rest(k)
         raised[on] = columns[on] @ told - found[on]
-        level[tooth, side] = raised[on].mean()
-        stds = (
-            np.abs(rms / (columns[on] @ free).mean() * free) if told.any() else scatter
-        )  # nothing of a tooth is told: it is as others are
-        field[on] = rms if told.any() else np.linalg.norm(columns[on].mean(axis=0) * scatter)
+        level[at] = raised[on].mean()
+        lever = columns[on].mean(axis=0)
+        if told.any():
+            level_std[at], stds = rms, np.abs(rms / (lever @ free) * free)
+        else:  # nothing of the tooth is told: it is as others are
+            level_std[at], stds = np.linalg.norm(lever * scatter), scatter
         for i, value, std in zip(own, told, stds, strict=True):
-            effects[i] = _told(effects[i], tooth, float(value), float(std))
-    return replace(loop, effects=tuple(effects), untold=UntoldFlanks(level, raised, fields))
+            effects[i] = _told(effects[i], at[0], float(value), float(std))
+    fields = (flank[:, None] & (which[:, None] == hidden)) * level_std.reshape(-1)[hidden]
+    return replace(loop, effects=tuple(effects), untold=UntoldFlanks(level, level_std, raised, fields))
 
 
 def _told(found: FoundEffect, tooth: int, value: float, std: float) -> FoundEffect:

@@ -141,6 +141,8 @@ class Wear(Card):
         counted from there.
     unsure : float
         What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³ (`limits.upper_limit`).
+    apart : (float, float)
+        How far the flanks of left and right, worn throughout, were made apart, mm (`made_apart`).
     """
 
     regions: tuple[WearRegion, ...]
@@ -160,6 +162,7 @@ class Wear(Card):
     unseen: float = 0.0
     proud: tuple[float, float] = (0.0, 0.0)
     unsure: float = 0.0
+    apart: tuple[float, float] = (0.0, 0.0)
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -251,7 +254,7 @@ def find_wear(
     whole[..., sheets.fillet :] |= (volumes.rest > 0.5)[:, None, None] & places.allowed[at][..., sheets.fillet :]
     area = (whole * sheets.area).sum(axis=(1, 2))
     peaks = deepest_to_mean(volumes.deepest[:, 0], volumes.value / area, where[:, 1])
-    level = common_level_std(covariance, area, where[:, 1]) * peaks
+    level = np.hypot(common_level_std(covariance, area, where[:, 1]) * peaks, volumes.apart[where[:, 1]])
     regions = list[WearRegion]()
     for i in map(int, np.flatnonzero(sure)):
         one = tuple(where[i])
@@ -276,7 +279,7 @@ def find_wear(
         side_maps=sheets, mask=counted, depth=np.where(counted, -volumes.filled, 0.0), spread=places.spread, limit=places.limit, flanks=flanks,
         hidden_pits=_hidden_pits(cells, sheets, counted, regions), faint=faint + laid.perhaps, burrs=laid.burrs, edges=int(places.edges.sum()),
         edge_depth=places.edge_depth, unseen=sum(region.max_depth * float(places.beyond[region.tooth, region.side.index].sum()) for region in regions),
-        proud=laid.proud, unsure=unsure,
+        proud=laid.proud, unsure=unsure, apart=(float(volumes.apart[0]), float(volumes.apart[1])),
     )  # fmt: skip
 
 

@@ -76,6 +76,8 @@ class SectionThickness(Card):
         Arc per deviation of a flank.
     hollows : Hollows or None
         What the pooled sections of worn teeth hide.
+    made_std : (teeth,) float or None
+        How well is known how thick each tooth was made, mm of arc: it is in what was lost, and not in what is left. None: no less well than all.
     drawn, made : (teeth, n_z) float or None
         Arc as it is drawn, and what effects of the maker add to it, mm: both are known between the places that are measured and up to the ends of the
         face. Pooled sections are about the drawn arc in their middle, and hold the mean of what was made otherwise. None: the same in all sections.
@@ -101,6 +103,7 @@ class SectionThickness(Card):
     turn: float = 1.0
     pooled_on: Ints | None = None
     hollows: Hollows | None = None
+    made_std: Floats | None = None
     drawn: Floats | None = None
     made: Floats | None = None
     otherwise: tuple[float, float] = (0.0, 0.0)
@@ -253,7 +256,12 @@ class SectionThickness(Card):
         if not np.isfinite(self.lost).any():
             return None
         least, at_z, _ = self._most_lost
-        return MostLost(least.curve, -least.overall, least.overall_std, float(at_z[least.curve]))
+        std = math.hypot(least.overall_std, self._made_std[least.curve])
+        return MostLost(least.curve, -least.overall, std, float(at_z[least.curve]))
+
+    @property
+    def _made_std(self) -> Floats:
+        return np.zeros(len(self.arc)) if self.made_std is None else self.made_std
 
     @cached_property
     def _most_lost(self) -> tuple[Least, Floats, Floats]:
@@ -286,7 +294,7 @@ class SectionThickness(Card):
                     at_z=float(at_z[tooth]),
                     std=std,
                     least_std=float(least.std[tooth]),
-                    loss_std=float(lost.std[tooth]),
+                    loss_std=math.hypot(lost.std[tooth], self._made_std[tooth]),
                 )
             )
         return tuple(result)

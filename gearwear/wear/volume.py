@@ -16,6 +16,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
+from gearwear.wear.made_apart import made_apart
 from gearwear.wear.surface import SideSurface
 from gearwear.wear.uncertainty import CellErrors, edge_covariance, ending_below, region_weights, torn_beyond
 from gearwear.wear.weights import SideWeights, by_side
@@ -52,6 +53,8 @@ class Volumes:
         Whether cells lie deeper than that surface by more than chance.
     rest : (k,) float
         Share of what the rest of the flank seems to have lost that is in `value` (`share_of_rest`).
+    apart : (2,) float
+        How far the flanks of a side worn throughout were made apart, mm (`made_apart`).
     """
 
     value: Floats
@@ -62,6 +65,7 @@ class Volumes:
     deepest: Floats
     pitted: Bools
     rest: Floats
+    apart: Floats
 
 
 def region_volumes(
@@ -104,13 +108,15 @@ def region_volumes(
         nothing, none = np.zeros(0), np.zeros((0, 0))
         return Volumes(
             value=nothing, certainty=nothing, together=nothing, covariance=none, filled=filled, deepest=np.zeros((0, 2)),
-            pitted=np.zeros(0, dtype=np.bool_), rest=nothing,
+            pitted=np.zeros(0, dtype=np.bool_), rest=nothing, apart=np.zeros(len(Side)),
         )  # fmt: skip
     torn, slope = torn_beyond(sheets, filled, noise, worn)
     ending = ending_below(sheets, filled, noise, worn, cells.grid.gear.undercut)
+    by_cells = CellErrors.of(cells, noise, loop)
+    apart = made_apart(by_cells, sheets, cells.grid, loop) if known and loop is not None else np.zeros(len(Side))
     errors = _Errors(
         cells=cells,
-        known=CellErrors.of(cells, noise, loop),
+        known=by_cells,
         sheets=sheets,
         mask=mask,
         wide=wide,
@@ -119,6 +125,7 @@ def region_volumes(
         torn=torn,
         slope=slope,
         ending=ending,
+        apart=apart,
     )
     surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
     near = wide[tuple(where.T)].astype(np.float64)
@@ -146,7 +153,7 @@ def region_volumes(
         covariance = chance + errors.of_wear(summed, support) + np.diag(share * (1.0 - share) * doubt)
     return Volumes(
         value=summed.value, certainty=certainty, together=together, covariance=covariance, filled=filled, deepest=surfaces.deepest,
-        pitted=surfaces.pitted, rest=share,
+        pitted=surfaces.pitted, rest=share, apart=apart,
     )  # fmt: skip
 
 
@@ -275,7 +282,7 @@ class _Surfaces:
 @dataclass(frozen=True, slots=True)
 class _Errors:
     """What the errors of cells make of integrals over regions: those that are `known`, and what else; `torn` and `slope` as `torn_beyond` gives them,
-    `ending` as `ending_below`, the others as `region_volumes` has them."""
+    `ending` as `ending_below`, `apart` as `made_apart`, the others as `region_volumes` has them."""
 
     cells: Cells
     known: CellErrors
@@ -287,6 +294,7 @@ class _Errors:
     torn: Floats
     slope: Floats
     ending: Floats
+    apart: Floats
 
     def by_chance(self, integral: _Integral, support: Floats, least: float = 0.0) -> Floats:
         """Covariance, mm⁶, where nothing is worn, of integrals over `support` (k, rows, columns); sides without wear are asked of which more than the
@@ -318,13 +326,16 @@ class _Errors:
         )
 
     def _of_made(self, weights: SideWeights) -> Floats:
-        """Covariance, mm⁶, by how high sides worn throughout may stand as they were made (`Loop.made`)."""
+        """Covariance, mm⁶, by how high sides worn throughout may stand as they were made (`Loop.made`), and their flanks apart."""
         if self.loop is None or self.loop.made is None:
             return np.zeros((len(weights), len(weights)))
-        level = np.zeros((len(weights), self.loop.made.shape[1]))
+        teeth = self.cells.grid.gear.teeth
+        level, own = np.zeros((len(weights), self.loop.made.shape[1])), np.zeros((len(Side), len(weights), teeth))
         for side, which, values in weights.by_side():
             level[which] += np.tensordot(values, self.cells.grid.side(self.loop.made, *side), axes=2)
-        return np.asarray(level @ level.T, dtype=np.float64)
+            own[side[1], which, side[0]] += self.apart[side[1]] * values.sum(axis=(1, 2))
+        own -= own.mean(axis=2, keepdims=True)  # about the mean of their side
+        return np.asarray(level @ level.T + np.einsum("sik,sjk->ij", own, own), dtype=np.float64)
 
 
 def unexplained_covariance(loop: Loop | None, weights: Floats | SideWeights) -> Floats:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gearwear.design.surface import TIP
 from gearwear.diagnose import few_cells
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import build_dictionary
@@ -45,3 +46,13 @@ def test_what_columns_explain_they_explain_on_fewer_cells(fit, monkeypatch):
     amplitudes = np.random.default_rng(1).normal(size=fit.dictionary.count)
     np.testing.assert_allclose(few.dictionary.columns @ amplitudes, few.target, atol=1e-9)
     assert few.covariance.texture < fit.covariance.texture and few.covariance.row_step < fit.covariance.row_step
+
+
+def test_teeth_are_left_out_where_rows_are_few_already(fit, monkeypatch):
+    """The first look at a large scan has few rows from the start."""
+    with in_force(replace(RULES, rows_of_sides=fit.cells.grid.rows)):
+        monkeypatch.setattr(few_cells, "ENOUGH_CELLS", fit.cells.grid.count // 3)
+        few, there = few_cells.on_few_cells(fit, fit.cells.seen, 0.01)
+    assert few.cells.grid is fit.cells.grid
+    on_teeth = few.cells.points.surface[there] <= TIP
+    assert set(few.cells.points.tooth[there][on_teeth]) == {0, 3, 6, 9}
