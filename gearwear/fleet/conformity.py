@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from enum import StrEnum
 
@@ -23,17 +22,16 @@ GOOD_TO_BAD = (Conformity.CONFORMING, Conformity.NEITHER, Conformity.NOT_CONFORM
 """Which of several decides."""
 
 
-def conformity(value: float, std: float, limit: float, low: float = math.nan, high: float = math.nan) -> Conformity:
+def conformity(least: float, most: float, limit: float) -> Conformity:
     """Whether a number keeps an upper limit.
 
     Parameters
     ----------
-    value, std : float
-        The number and its standard deviation; nan where none is stated.
+    least, most : float
+        Between what it lies: the number less and with its expanded uncertainty U, and what a range leaves open beyond; nan where none is
+        stated.
     limit : float
         Of the same unit.
-    low, high : float
-        Within what limits the number lies where more than scatter is open; else nan.
 
     Returns
     -------
@@ -41,22 +39,18 @@ def conformity(value: float, std: float, limit: float, low: float = math.nan, hi
 
     Notes
     -----
-    ISO 14253-1: with U = 2 u the number conforms if ``y + U <= limit``, does not if ``y − U > limit``, and in between neither is proven.
+    ISO 14253-1: with U = 2 u a number y conforms if ``y + U <= limit``, does not if ``y − U > limit``, and in between neither is proven.
     The edition of 2017 asks for 95 % by default, for which 1.65 u would do with one limit; 2 u is on the safe side of it, and what the
-    inspection takes. Without a stated u nothing is proven, unless `high` says how large the number may be.
+    inspection takes. Where nothing is stated nothing is proven.
 
     Examples
     --------
-    >>> [str(conformity(value, 0.01, 0.1)) for value in (0.07, 0.09, 0.11, 0.13)]
+    >>> [str(conformity(value - 0.02, value + 0.02, 0.1)) for value in (0.07, 0.09, 0.11, 0.13)]
     ['conforming', 'neither', 'neither', 'not conforming']
     """
-    least, most = (bound if math.isfinite(bound) else value for bound in (low, high))
-    if not math.isfinite(value) or not (math.isfinite(std) or math.isfinite(high)):
-        return Conformity.NEITHER
-    expanded = COVERAGE * std if math.isfinite(std) else 0.0
-    if max(value, most) + expanded <= limit:
+    if most <= limit:
         return Conformity.CONFORMING
-    return Conformity.NOT_CONFORMING if min(value, least) - expanded > limit else Conformity.NEITHER
+    return Conformity.NOT_CONFORMING if least > limit else Conformity.NEITHER
 
 
 def worst(judged: Iterable[Conformity]) -> Conformity | None:

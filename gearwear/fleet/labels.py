@@ -41,11 +41,14 @@ def shown(quantity: str, value: float, std: float) -> str:
 
 
 def rate_words(trend: Trend) -> str:
-    """The rate with its ±, per million cycles or per year of 365.25 days."""
+    """The rate with its ±, per million cycles or per year of 365.25 days; where ranges leave more open, its 95 % interval."""
     if trend.line is None:
         return "–"
     factor, per = (MILLION, "10⁶ cycles") if trend.clock == CYCLES else (365.25, "year")
-    return f"{shown(trend.quantity, factor * trend.line.slope, factor * trend.line.slope_std)} per {per}"
+    between = ""
+    if any(trend.line.slope_open):
+        between = f" ({' to '.join(significant(factor * end) for end in trend.line.slope_interval)})"
+    return f"{shown(trend.quantity, factor * trend.line.slope, factor * trend.line.slope_std)}{between} per {per}"
 
 
 def left_words(trend: Trend) -> str:
@@ -69,9 +72,13 @@ def _time_unit(days: Reach) -> tuple[float, str]:
 
 def _span(span: Reach, unit: float, name: str) -> str:
     def end(value: float) -> str:
+        if value == 0.0:
+            return "now"
         return "never" if math.isinf(value) else significant(value / unit, 2)
 
     if math.isinf(span.value):
+        if span.low == 0.0:
+            return "not by its line, may be reached now"
         return "not by its line" if math.isinf(span.low) else f"not before {end(span.low)}{name}"
     between = f"{end(span.low)} to {end(span.high)}" if math.isfinite(span.high) else f"from {end(span.low)} on"
     return f"{end(span.value)}{name} ({between})"

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from functools import partial
 
 from markupsafe import Markup
 
@@ -22,6 +23,8 @@ NAME_STEP, LEVEL_STEP, NAME_LETTERS = 11.0, 95.0, 14
 """Room that a gear's name takes along the overview, turned and level, and its letters there; where gears are closer, not every one is named."""
 AHEAD = 0.3
 """Share of the time scanned that is kept free for what the line says of the time ahead."""
+BAND_STEPS = 8
+"""Pieces that the edge of a line's band is drawn in."""
 ROOM = 1.15
 """Height of a chart over its limit."""
 TALLEST = 1.6
@@ -86,7 +89,7 @@ def place_of(point: Point, clock: str) -> float | None:
 
 
 def _top(point: Point) -> float:
-    return max(point.value + COVERAGE * (point.std if point.std > 0.0 else 0.0), point.high if math.isfinite(point.high) else 0.0)
+    return max(filter(math.isfinite, (point.value, point.ends[1])))
 
 
 def trend_panel(trend: Trend, scales: Scales) -> Markup:
@@ -95,7 +98,7 @@ def trend_panel(trend: Trend, scales: Scales) -> Markup:
     marks = [f'<path class="axis" d="M{SCALE_LEFT} {TOP}V{SCALE_BOTTOM}H{RIGHT}"/>', *_ticks(name, scales)]
     if trend.limit is not None:
         marks.append(f'<path class="limit" d="M{SCALE_LEFT} {scales.y(name, trend.limit):.1f}H{RIGHT}"/>')
-    marks += _line(trend, scales)
+    marks += [*_band(trend, scales), *_line(trend, scales)]
     for point in trend.points:
         place = place_of(point, scales.clock)
         if place is not None:
@@ -139,12 +142,32 @@ def _date(days: float) -> str:
     return (DAY_0 + days * DAY).date().isoformat()
 
 
+def _band(trend: Trend, scales: Scales) -> list[str]:
+    """The 95 % interval of the line, with what ranges leave open."""
+    line = trend.line
+    if line is None or trend.clock != scales.clock:
+        return []
+    first, begin = _begin(trend, scales)
+    low = begin if trend.from_new else first
+    places = [low + (scales.end - low) * step / BAND_STEPS for step in range(BAND_STEPS + 1)]
+    ends = [line.band(place - begin) for place in places]
+    lower, upper = (
+        [(scales.x(x), scales.y(trend.quantity, end[side])) for x, end in zip(places, ends, strict=True)] for side in (0, 1)
+    )
+    return [f'<path class="band" d="M{"L".join(f"{x:.1f} {y:.1f}" for x, y in [*lower, *reversed(upper)])}z"/>']
+
+
+def _begin(trend: Trend, scales: Scales) -> tuple[float, float]:
+    """The place of the first inspection, and from where the places of the line are counted."""
+    first = place_of(trend.points[0], scales.clock) or 0.0
+    return first, 0.0 if trend.clock == CYCLES else first
+
+
 def _line(trend: Trend, scales: Scales) -> list[str]:
     line = trend.line
     if line is None or trend.clock != scales.clock:
         return []
-    first = place_of(trend.points[0], scales.clock) or 0.0
-    begin = 0.0 if trend.clock == CYCLES else first
+    first, begin = _begin(trend, scales)
     last, end = place_of(trend.last, scales.clock) or 0.0, scales.end
     pieces = []
     for kind, low, high in (("fit", 0.0 if trend.from_new else first, last), ("ahead", last, end)):
@@ -164,15 +187,25 @@ def _line(trend: Trend, scales: Scales) -> list[str]:
 
 
 def _mark(x: float, name: str, point: Point, scales: Scales) -> str:
-    """A dot with 2 u on either side; where nothing was found, a hollow one with what might be there; an arrow where it is beyond the chart."""
+    """A dot with 2 u on either side, and a thin whisker as far as decisions take its range; where nothing was found, a hollow one with what
+    might be there; an arrow where it is beyond the chart."""
     y = scales.y(name, point.value)
     if point.value > scales.tops[name]:
         return f'<path class="dot" d="M{x - 2.4:.1f} {TOP + 3.4:.1f}h4.8l-2.4 -4.2z"/>'
-    if point.std > 0.0:
-        low, high = (scales.y(name, point.value + sign * COVERAGE * point.std) for sign in (-1.0, 1.0))
-        return f'<path class="u" d="M{x:.1f} {low:.1f}V{high:.1f}"/><circle class="dot" cx="{x:.1f}" cy="{y:.1f}" r="1.9"/>'
-    bar = f'<path class="u" d="M{x:.1f} {y:.1f}V{scales.y(name, point.high):.1f}"/>' if math.isfinite(point.high) else ""
-    return f'{bar}<circle class="none" cx="{x:.1f}" cy="{y:.1f}" r="1.9"/>'
+    kind = "dot" if point.std > 0.0 else "none"
+    bars = _bars(x, point, lambda value: scales.y(name, value), 1.6)
+    return f'{bars}<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="1.9"/>'
+
+
+def _bars(x: float, point: Point, y: Callable[[float], float], cap: float) -> str:
+    """2 u on either side of a point, and a whisker with caps where a range goes beyond."""
+    half = COVERAGE * point.noise if point.noise > 0.0 else 0.0
+    bars = f'<path class="u" d="M{x:.1f} {y(point.value - half):.1f}V{y(point.value + half):.1f}"/>' if half else ""
+    for far, end, side in zip(point.open, point.ends, (-1.0, 1.0), strict=True):
+        if far > 0.0:
+            caps = f"M{x - cap:.1f} {y(end):.1f}h{2.0 * cap:.1f}"
+            bars += f'<path class="open" d="M{x:.1f} {y(point.value + side * half):.1f}V{y(end):.1f}{caps}"/>'
+    return bars
 
 
 def overview(gears: Sequence[GearTrend]) -> Markup:
@@ -201,18 +234,21 @@ def overview(gears: Sequence[GearTrend]) -> Markup:
         )
     for i, (rank, gear, point, limit) in enumerate(limited):
         x = 50.0 + (i + 0.5) * step
-        half = COVERAGE * point.std / limit if point.std > 0.0 else 0.0
-        share = point.value / limit
-        high = max(share + half, point.high / limit if math.isfinite(point.high) else 0.0)
         radius = min(max(0.4 * step, 1.8), 4.0)
+        bars = _bars(x, point, partial(_share, y, limit), radius)
         marks.append(
-            f'<a href="#g{rank}"><title>{_escaped(gear.gear_id)}</title><path class="u" d="M{x:.1f} {y(share - half):.1f}V{y(high):.1f}"/>'
-            f'<circle class="{css(gear.conformity)}" cx="{x:.1f}" cy="{y(share):.1f}" r="{radius:.1f}"/>'
+            f'<a href="#g{rank}"><title>{_escaped(gear.gear_id)}</title>{bars}'
+            f'<circle class="{css(gear.conformity)}" cx="{x:.1f}" cy="{y(point.value / limit):.1f}" r="{radius:.1f}"/>'
             f"{_name(gear.gear_id, x, bottom, level) if i % every == 0 else ''}</a>"
         )
     return Markup(
         f'<svg class="overview" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="Share of the limit used, gear by gear">{"".join(marks)}</svg>'
     )
+
+
+def _share(y: Callable[[float], float], limit: float, value: float) -> float:
+    """Where a value stands as a share of its limit."""
+    return y(value / limit)
 
 
 def _name(gear_id: str, x: float, bottom: float, level: bool) -> str:

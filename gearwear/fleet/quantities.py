@@ -123,6 +123,7 @@ def _wear(report: Json) -> Iterator[Quantity]:
 
 
 def _depth(region: Json, scope: str) -> Quantity:
+    """The deepest place of a flank, and as little as it may be where an even loss of its side may be thinner teeth."""
     return Quantity(
         name="wear_depth_mm",
         scope=scope,
@@ -130,6 +131,7 @@ def _depth(region: Json, scope: str) -> Quantity:
         std=1e-3 * _number(region.get("max_depth_std_um")),
         tooth=int(region["tooth"]),
         flank=str(region["flank"]) if scope == TOOTH else "",
+        low=1e-3 * _number(region.get("max_depth_less_even_um")),
     )
 
 

@@ -13,8 +13,8 @@ from gearwear.fleet.trend import Advance, GearTrend, Trend
 TREND_COLUMNS: dict[str, type] = {
     "rank": int, "gear_id": str, "gear_conformity": str, "quantity": str, "inspections": int, "first": datetime, "last": datetime,
     "cycles_run": float, "value": float, "std": float, "low": float, "high": float, "limit": float, "conformity": str,
-    "change": float, "change_std": float, "change_p": float, "change_significant": bool, "rate": float, "rate_std": float, "per": str,
-    "rate_p": float, "rate_significant": bool, "from_new": bool, "line_misfit": float, "line_bends": bool, "left": float,
+    "change": float, "change_std": float, "change_low": float, "change_high": float, "change_p": float, "change_significant": bool,
+    "rate": float, "rate_std": float, "rate_low": float, "rate_high": float, "per": str, "rate_p": float, "rate_significant": bool, "from_new": bool, "line_misfit": float, "line_bends": bool, "left": float,
     "left_low": float, "left_high": float, "limit_on": datetime, "limit_on_earliest": datetime, "limit_on_latest": datetime,
     "notes": str,
 }  # fmt: skip
@@ -22,7 +22,8 @@ TREND_COLUMNS: dict[str, type] = {
 
 POINT_COLUMNS: dict[str, type] = {
     "gear_id": str, "quantity": str, "inspected": datetime, "cycles_run": float, "scans": int, "value": float, "std": float, "low": float,
-    "high": float, "change": float, "change_std": float, "change_p": float, "change_significant": bool,
+    "high": float, "change": float, "change_std": float, "change_low": float, "change_high": float, "change_p": float,
+    "change_significant": bool,
 }  # fmt: skip
 """Columns of ``inspections.csv``: a row for each gear, quantity and inspection; the change is from the one before, where their order is known."""
 
@@ -62,7 +63,7 @@ def _trend_row(trend: Trend) -> dict[str, Any]:
         row |= _change(trend.steps[-1])
     if line is not None:
         row |= {
-            "rate": line.slope, "rate_std": line.slope_std, "per": trend.clock, "rate_p": line.p_value,
+            "rate": line.slope, "rate_std": line.slope_std, "rate_low": line.slope_interval[0], "rate_high": line.slope_interval[1], "per": trend.clock, "rate_p": line.p_value,
             "rate_significant": trend.significant, "from_new": trend.from_new, "line_misfit": line.misfit, "line_bends": line.bends,
         }  # fmt: skip
     if trend.left is not None:
@@ -76,7 +77,10 @@ def _trend_row(trend: Trend) -> dict[str, Any]:
 
 
 def _change(step: Advance) -> dict[str, Any]:
-    return {"change": step.value, "change_std": step.std, "change_p": step.p_value, "change_significant": step.significant}
+    return {
+        "change": step.value, "change_std": step.std, "change_low": step.low, "change_high": step.high, "change_p": step.p_value,
+        "change_significant": step.significant,
+    }  # fmt: skip
 
 
 def point_rows(gears: Iterable[GearTrend]) -> list[dict[str, Any]]:

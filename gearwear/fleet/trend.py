@@ -10,10 +10,11 @@ from itertools import compress, pairwise
 
 import numpy as np
 
-from gearwear.fleet.conformity import GOOD_TO_BAD, Conformity, conformity, worst
-from gearwear.fleet.line import FittedLine, Reach, fit_line, line_from_new, reaches
+from gearwear.design.quantity import NORMAL_95
+from gearwear.fleet.conformity import COVERAGE, GOOD_TO_BAD, Conformity, conformity, worst
+from gearwear.fleet.line import FittedLine, Reach, chance_of, fit_line, interval, line_from_new, reaches
 from gearwear.fleet.order import Occasion, Order, order_of
-from gearwear.fleet.significance import discoveries, two_sided
+from gearwear.fleet.significance import discoveries
 
 QUANTITIES = (
     "wear_volume_mm3", "wear_area_mm2", "wear_depth_mm", "thickness_loss_mm", "backlash_mm", "lost_volume_mm3", "transmission_error_um",
@@ -78,6 +79,7 @@ class Point:
         Mean of its scans. The standard deviation is theirs, not divided by their number: what repeats alike does not average out; it is the
         scatter of the mean where that is larger.
     low, high : float
+        The range of its scans, their own 95 % in it; nan where none has one.
     scans : int
     """
 
@@ -95,9 +97,21 @@ class Point:
         return Occasion(self.inspected, self.cycles, self.which)
 
     @property
-    def scatter(self) -> float:
-        """What the number is weighed by: where nothing was found, half of what might be there all the same."""
-        return self.std if self.std > 0.0 or not math.isfinite(self.high) else 0.5 * (self.high - self.value)
+    def noise(self) -> float:
+        """Standard deviation of the scatter: 0 where nothing was found, and a range says what might be there; nan where nothing is stated."""
+        return 0.0 if not self.std > 0.0 and math.isfinite(self.high) else self.std
+
+    @property
+    def open(self) -> tuple[float, float]:
+        """How far below and above the range reaches where that is beyond the scatter's own 95 %; else 0."""
+        own = NORMAL_95 * self.noise * (1.0 + 1e-9)
+        down, up = self.value - self.low, self.high - self.value
+        return down if down > own else 0.0, up if up > own else 0.0
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """What a decision goes by: the range with U, two standard deviations, at either end; nan where nothing is stated."""
+        return interval(self.value, *self.open, COVERAGE * self.noise)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,9 +122,11 @@ class Advance:
     ----------
     before, after : Point
     value, std : float
-        The change.
+        The change, and the standard deviation of its scatter.
+    low, high : float
+        Its 95 % interval, with what the ranges leave open: each number anywhere in its own.
     p_value : float
-        Chance of such a change where there is none.
+        Chance of such a change where there is none: of the least that the ranges leave.
     significant : bool
         Among all of the fleet's: of those called so, one in twenty is chance.
     """
@@ -119,8 +135,15 @@ class Advance:
     after: Point
     value: float
     std: float
+    low: float
+    high: float
     p_value: float
     significant: bool = False
+
+    @property
+    def falls(self) -> bool:
+        """Whether it is less than nothing by more than three standard deviations, whatever the ranges leave open."""
+        return self.high < (NORMAL_95 - 3.0) * self.std
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,7 +169,8 @@ class Trend:
     conformity : Conformity or None
         Of the last inspection with the limit, the worst of those that may be the last; None without one.
     left : Reach or None
-        Cycles or days from the last inspection until the line reaches the limit; None without limit or line.
+        Cycles or days from the last inspection until the line reaches the limit; None without limit or line. Where that inspection does not
+        prove that the limit is kept it begins with 0, and where it proves that it is not it is 0.
     per_day : float
         Cycles a day between the first and the last inspection; nan where that is not known.
     """
@@ -214,7 +238,7 @@ class GearTrend:
 
     @property
     def nearest(self) -> Trend | None:
-        """The quantity that reaches its limit first, or has gone furthest beyond; None where none has a limit."""
+        """The quantity that decides: the worst by its limit, and of those the first to reach it or furthest beyond; None where none has a limit."""
         limited = [trend for trend in self.trends.values() if trend.limit is not None]
         return min(limited, key=_urgency, default=None)
 
@@ -267,7 +291,7 @@ def gear_trend(
     if trends and order.note:
         remarks.append(order.note)
     volume = trends.get("wear_volume_mm3")
-    if volume is not None and any(step.value < -3.0 * step.std for step in volume.steps):
+    if volume is not None and any(step.falls for step in volume.steps):
         remarks.append("its worn volume fell from one inspection to the next: is it the same gear?")
     return GearTrend(gear_id=gear_id, trends=trends, conformity=worst(judged), notes=tuple(remarks))
 
@@ -300,7 +324,7 @@ def by_urgency(gears: Iterable[GearTrend]) -> list[GearTrend]:
 
     def key(gear: GearTrend) -> tuple[int, float, float, float, float, str]:
         nearest = gear.nearest
-        _, time_left, earliest = (0.0, math.inf, math.inf) if nearest is None else _urgency(nearest)
+        *_, time_left, earliest = (math.inf, math.inf) if nearest is None else _urgency(nearest)
         at_limit = gear.conformity in (Conformity.NOT_CONFORMING, Conformity.NEITHER)
         return order[gear.conformity], -gear.used if at_limit else 0.0, time_left, earliest, _wear_rate(gear), gear.gear_id
 
@@ -313,12 +337,14 @@ def _wear_rate(gear: GearTrend) -> float:
     return 0.0 if volume is None or volume.line is None else -volume.line.slope
 
 
-def _urgency(trend: Trend) -> tuple[float, float, float]:
-    """Smaller is more urgent: beyond the limit by how much, then time left, at the earliest and by the line."""
+def _urgency(trend: Trend) -> tuple[int, float, float, float]:
+    """Smaller is more urgent: what does not conform, by how much; what may not; then time left by the line, and at the earliest."""
     assert trend.limit is not None
     reach = trend.days_left or trend.left
-    beyond = -trend.last.value / trend.limit if trend.conformity is Conformity.NOT_CONFORMING else 0.0
-    return (beyond, math.inf, math.inf) if reach is None else (beyond, reach.value, reach.low)
+    bad = trend.conformity is Conformity.NOT_CONFORMING
+    time_left = (math.inf, math.inf) if bad or reach is None else (reach.value, reach.low)
+    place = 0 if trend.conformity is None else -GOOD_TO_BAD.index(trend.conformity)
+    return place, -trend.last.value / trend.limit if bad else 0.0, *time_left
 
 
 def points_of(readings: Iterable[Reading], order: Order | None = None) -> tuple[Point, ...]:
@@ -334,10 +360,7 @@ def _point(inspection: Occasion, scans: Sequence[Reading]) -> Point:
     values, stds = np.array([scan.value for scan in scans]), np.array([scan.std for scan in scans])
     stated = math.sqrt(float(np.mean(np.square(stds)))) if np.isfinite(stds).all() else math.nan
     seen = float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else 0.0
-    bounds = [
-        [scan.low if math.isfinite(scan.low) else scan.value for scan in scans],
-        [scan.high if math.isfinite(scan.high) else scan.value for scan in scans],
-    ]
+    ends = [_own_range(scan) for scan in scans]
     open_ = any(math.isfinite(scan.low) or math.isfinite(scan.high) for scan in scans)
     return Point(
         inspected=inspection.inspected,
@@ -345,25 +368,32 @@ def _point(inspection: Occasion, scans: Sequence[Reading]) -> Point:
         which=inspection.which,
         value=float(values.mean()),
         std=max(stated, seen) if math.isfinite(stated) else math.nan,
-        low=min(bounds[0]) if open_ else math.nan,
-        high=max(bounds[1]) if open_ else math.nan,
+        low=min(low for low, _ in ends) if open_ else math.nan,
+        high=max(high for _, high in ends) if open_ else math.nan,
         scans=len(scans),
+    )
+
+
+def _own_range(scan: Reading) -> tuple[float, float]:
+    """What a scan says that its number lies between: its range, else its own 95 %."""
+    own = NORMAL_95 * scan.std if math.isfinite(scan.std) else 0.0
+    return (
+        scan.low if math.isfinite(scan.low) else scan.value - own,
+        scan.high if math.isfinite(scan.high) else scan.value + own,
     )
 
 
 def _trend(gear_id: str, quantity: str, readings: Sequence[Reading], limit: float | None, order: Order) -> Trend:
     points, state = _worst_last(points_of(readings, order), limit, order)
     clock, places = _places(points)
-    usable = [i for i, point in enumerate(points) if point.scatter > 0.0]
+    usable = [(place, point) for place, point in zip(places, points, strict=False) if point.noise > 0.0 or any(point.open)]
     line, from_new = None, False
     if clock and len(usable) > 1:
-        x, y, std = (
-            np.array([values[i] for i in usable]) for values in (places, [p.value for p in points], [p.scatter for p in points])
-        )
-        line = fit_line(x, y, std)
-    elif clock == CYCLES and len(usable) == 1 and quantity in NOTHING_AT_FIRST and places[usable[0]] > 0.0:
-        point = points[usable[0]]
-        line, from_new = line_from_new(places[usable[0]], point.value, point.scatter), True
+        x, y, std = (np.array(values) for values in zip(*((place, p.value, p.noise) for place, p in usable), strict=True))
+        line = fit_line(x, y, std, *np.array([point.open for _, point in usable]).T)
+    elif clock == CYCLES and len(usable) == 1 and quantity in NOTHING_AT_FIRST and usable[0][0] > 0.0:
+        place, point = usable[0]
+        line, from_new = line_from_new(place, point.value, point.noise, *point.open), True
     return Trend(
         gear_id=gear_id,
         quantity=quantity,
@@ -374,9 +404,17 @@ def _trend(gear_id: str, quantity: str, readings: Sequence[Reading], limit: floa
         from_new=from_new,
         limit=limit,
         conformity=state,
-        left=None if limit is None or line is None else reaches(line, limit, places[-1]),
+        left=None if limit is None or line is None else _left(line, limit, places[-1], state),
         per_day=_per_day(points),
     )
+
+
+def _left(line: FittedLine, limit: float, now: float, state: Conformity | None) -> Reach:
+    """How far the limit is off by the line, as far as the last inspection itself does not say otherwise."""
+    reach = reaches(line, limit, now)
+    if state is Conformity.NOT_CONFORMING:
+        return Reach(0.0, 0.0, 0.0)
+    return reach if state is Conformity.CONFORMING else replace(reach, low=0.0)
 
 
 def _worst_last(points: tuple[Point, ...], limit: float | None, order: Order) -> tuple[tuple[Point, ...], Conformity | None]:
@@ -387,7 +425,7 @@ def _worst_last(points: tuple[Point, ...], limit: float | None, order: Order) ->
     """
 
     def judge(point: Point) -> Conformity | None:
-        return None if limit is None else conformity(point.value, point.std, limit, point.low, point.high)
+        return None if limit is None else conformity(*point.ends, limit)
 
     def badness(point: Point) -> tuple[int, float]:
         state = judge(point)
@@ -421,5 +459,9 @@ def _per_day(points: Sequence[Point]) -> float:
 
 
 def _step(before: Point, after: Point) -> Advance:
-    value, std = after.value - before.value, math.hypot(before.scatter, after.scatter)
-    return Advance(before=before, after=after, value=value, std=std, p_value=two_sided(value / std) if std > 0.0 else math.nan)
+    value, std = after.value - before.value, math.hypot(before.noise, after.noise)
+    down, up = after.open[0] + before.open[1], after.open[1] + before.open[0]
+    low, high = interval(value, down, up, NORMAL_95 * std)
+    return Advance(
+        before=before, after=after, value=value, std=std, low=low, high=high, p_value=chance_of(value, down, up, std)
+    )  # fmt: skip

@@ -6,7 +6,7 @@ import math
 import textwrap
 from collections.abc import Sequence
 
-from gearwear.design.quantity import counted, listed, sentence, significant, unbroken
+from gearwear.design.quantity import NORMAL_95, counted, listed, sentence, significant, unbroken
 from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.gauge import Accord, GaugeStudy, Scatter
 from gearwear.fleet.labels import left_words, rate_words, shown, title_of
@@ -116,11 +116,15 @@ def gear_words(gear: GearTrend) -> str:
 
 
 def value_words(trend: Trend) -> str:
-    """The value of the last inspection with its ±; where nothing was found, what might be there."""
+    """The value of the last inspection with its ±, and its range where that is wider; where nothing was found, what might be there."""
     last = trend.last
     if last.value == 0.0 and not last.std > 0.0 and math.isfinite(last.high):
         return f"none seen, below {shown(trend.quantity, last.high, math.nan)}"
-    return shown(trend.quantity, last.value, last.std)
+    words = shown(trend.quantity, last.value, last.std)
+    if not any(last.open):
+        return words
+    down, up = (far or NORMAL_95 * last.noise for far in last.open)
+    return f"{words} (may be {significant(last.value - down)} to {significant(last.value + up)})"
 
 
 def gauge_lines(studies: Sequence[GaugeStudy], width: int = 80) -> list[tuple[str, str]]:

@@ -48,13 +48,22 @@ def test_what_the_scan_leaves_open_stands_where_nothing_was_found():
     given["wear"]["volume_mm3"] = {"value": 0.0, "std": 0.0, "low": 0.0, "high": 120.0, "range_from": "…"}
     volume = rows(given)["wear_volume_mm3"]
     assert (volume.value, volume.high) == (0.0, 120.0)
-    assert conformity(volume.value, volume.std, 50.0, volume.low, volume.high) is Conformity.NEITHER
+    assert conformity(volume.low, volume.high, 50.0) is Conformity.NEITHER
 
 
 def test_a_range_of_the_report_is_kept():
     given = report()
     given["wear"]["volume_mm3"] |= {"low": 0.5, "high": 3.0}
     assert (rows(given)["wear_volume_mm3"].low, rows(given)["wear_volume_mm3"].high) == (0.5, 3.0)
+
+
+def test_a_depth_that_may_be_thinner_teeth_has_a_lower_end():
+    given = report(depth=(60.0, 2.0))
+    assert math.isnan(rows(given)["wear_depth_mm"].low)
+    given["wear"]["regions"][0]["max_depth_less_even_um"] = 15.0
+    for scope, key in ((GEAR, "wear_depth_mm"), (TOOTH, ("wear_depth_mm", 3, "left"))):
+        depth = rows(given, scope)[key]
+        assert (depth.value, depth.low) == (pytest.approx(0.06), pytest.approx(0.015)) and math.isnan(depth.high)
 
 
 def test_meshing_and_inspection():

@@ -12,6 +12,7 @@ import pytest
 from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.order import Occasion
 from gearwear.fleet.panels import scales_of, trend_panel
+from gearwear.fleet.significance import two_sided
 from gearwear.fleet.trend import CYCLES, DAYS, Reading, by_urgency, gear_trend, points_of, with_significance
 from gearwear.fleet.words import state_words, verdict_words
 
@@ -90,13 +91,16 @@ def test_scans_of_one_inspection_are_one_point_whose_scatter_is_not_averaged_awa
     assert wide.std == pytest.approx(0.04 / math.sqrt(2.0) / math.sqrt(2.0))  # the scatter of the mean of two
 
 
-def test_where_nothing_was_found_what_may_hide_weighs_the_point():
+def test_where_nothing_was_found_what_may_hide_counts():
     hidden = replace(readings([0.0])[0], std=math.nan, low=0.0, high=0.02)
     (point,) = points_of([hidden])
-    assert point.scatter == pytest.approx(0.01)
+    assert (point.open, point.ends) == ((0.0, 0.02), (0.0, 0.02))
     later = readings([0.0, 0.05])[1]
     trend = gear_trend("G1", [hidden, later], {}).trends["wear_depth_mm"]
-    assert trend.steps[0].std == pytest.approx(math.hypot(0.01, 0.004))
+    step = trend.steps[0]
+    assert (step.value, step.std, step.high) == (pytest.approx(0.05), 0.004, pytest.approx(0.05 + 1.96 * 0.004))
+    assert step.low == pytest.approx(0.05 - 0.02 - 1.96 * 0.004)
+    assert step.p_value == pytest.approx(two_sided(0.03 / 0.004))
 
 
 def test_what_has_a_limit_and_no_value_cannot_be_said():
