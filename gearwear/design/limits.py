@@ -51,6 +51,20 @@ class Limits:
         }
         return {key: value for key, value in keys.items() if value is not None}
 
+    def check(self, pitch: float) -> None:
+        """Refuse lengths that no gear of this pitch, mm, can reach: they are of another unit, and everything would keep them.
+
+        Raises
+        ------
+        InputError
+            If one is as large as the pitch.
+        """
+        for key, value in self.by_quantity().items():
+            if key.endswith("_mm") and value >= pitch:
+                raise InputError(
+                    f"[limits] {key} = {value:g}: more than the pitch of {pitch:.4g} mm, and so none; of µm {1e-3 * value:g} would be right"
+                )
+
 
 LIMIT_KEYS = ("wear_depth_mm", "wear_volume_mm3", "thickness_loss_mm", "backlash_mm")
 """Keys of ``[limits]``, in the order of `Limits`."""

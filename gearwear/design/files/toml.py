@@ -218,6 +218,7 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     # A gear alone shares with itself: nothing.
     tables = {part: _with_shared(data[part], other, data[other]) for part, other in zip(parts, parts[::-1], strict=True)}
     gears = {part: Gear.from_spec(_gear_spec(part, tables[part])) for part in parts}
+    limits.check(min(gear.pitch_angle * gear.reference_radius for gear in gears.values()))
     notes = tuple(note for gear in gears.values() for note in gear.notes)
     if len(parts) == 1:
         for section in ("pair", "load"):
