@@ -14,9 +14,20 @@ from gearwear.fleet import words
 from gearwear.fleet.anova import Component
 from gearwear.fleet.gauge import Accord, GaugeStudy, Repeat
 from gearwear.fleet.labels import date_words, rate_words, shown, title_of
-from gearwear.fleet.panels import css, largest, overview, ratio_panel, repeat_panel, scales_of, trend_panel
+from gearwear.fleet.panels import (
+    Scales,
+    clock_of,
+    css,
+    day_words,
+    largest,
+    overview,
+    ratio_panel,
+    repeat_panel,
+    scales_of,
+    trend_panel,
+)
 from gearwear.fleet.reading import StoredFleet
-from gearwear.fleet.trend import CYCLES, GearTrend, Trend
+from gearwear.fleet.trend import CYCLES, DAYS, GearTrend, Trend
 from gearwear.report.page.environment import environment
 from gearwear.report.records.comparison import made_by
 
@@ -73,13 +84,11 @@ def trend_page(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
         ]
         state = words.state_words(gear)
         cards.append(GearCard(f"g{rank}", gear.gear_id, state, css(gear.conformity), words.gear_words(gear), gear.notes, panels))
-    first, last = _ends(gears)
-    along = "millions of mesh cycles since new" if scales.clock == CYCLES else "date"
-    spans = f"up to {significant(1e-6 * scales.end, 2)}" if scales.clock == CYCLES else f"{first} to {last}"
-    tops = [f"{title_of(name)} {shown(name, scales.tops[name], float('nan'))}" for name in words.MAIN if name in scales.tops]
+    tops = scales[CYCLES].tops
     return environment(HERE).get_template("trend.html.j2").render(
         subject=words.fleet_words(fleet, gears), verdict=words.verdict_words(gears), overview=overview(gears), cards=cards,
-        rows=[_row(rank, gear) for rank, gear in enumerate(gears, 1)], along=along, spans=spans, tops=tops, same_teeth=words.SAME_TEETH,
+        rows=[_row(rank, gear) for rank, gear in enumerate(gears, 1)], along=_along(gears, scales),
+        tops=[f"{title_of(name)} {shown(name, tops[name], math.nan)}" for name in words.MAIN if name in tops], same_teeth=words.SAME_TEETH,
         footer=_footer(),
     )  # fmt: skip
 
@@ -88,16 +97,16 @@ def _beyond(trend: Trend) -> bool:
     return css(trend.conformity) == "not-conforming"
 
 
-def _ends(gears: Sequence[GearTrend]) -> tuple[str, str]:
-    """First and last date of the fleet."""
-    moments = [
-        point.inspected
-        for gear in gears
-        for trend in gear.trends.values()
-        for point in trend.points
-        if point.inspected is not None
-    ]
-    return date_words(min(moments, default=None)), date_words(max(moments, default=None))
+def _along(gears: Sequence[GearTrend], scales: Mapping[str, Scales]) -> str:
+    """What stands along x."""
+    clocks = {clock_of(trend) for gear in gears for trend in gear.trends.values()}
+    said = []
+    if CYCLES in clocks:
+        said.append(f"millions of mesh cycles since new, up to {significant(1e-6 * scales[CYCLES].end, 2)}")
+    if DAYS in clocks:
+        span = " to ".join(dict.fromkeys(day_words(day) for day in (scales[DAYS].start, scales[DAYS].last)))
+        said.append(f"the date, {span}" + (", of gears whose cycles do not tell" if len(clocks) > 1 else ""))
+    return "; or ".join(said)
 
 
 def _row(rank: int, gear: GearTrend) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from functools import partial
@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from gearwear.fleet.conformity import COVERAGE, Conformity
 from gearwear.fleet.gauge import Repeat, Scatter
-from gearwear.fleet.trend import CYCLES, GearTrend, Point, Trend
+from gearwear.fleet.trend import CYCLES, DAYS, GearTrend, Point, Trend
 
 WIDTH, HEIGHT = 132.0, 58.0
 """Of a small chart, in its own units; the page says how large one is."""
@@ -63,14 +63,9 @@ class Scales:
         return SCALE_BOTTOM - (SCALE_BOTTOM - TOP) * min(max(share, -0.03), 1.0)
 
 
-def scales_of(gears: Sequence[GearTrend]) -> Scales:
-    """Scales for a fleet: the height is the limit's, where there is one; cycles where all gears with a line have them."""
+def scales_of(gears: Sequence[GearTrend]) -> dict[str, Scales]:
+    """Scales for a fleet, by clock: the height is the limit's, where there is one."""
     every = [trend for gear in gears for trend in gear.trends.values()]
-    clocks = {trend.clock for trend in every if trend.clock}
-    clock = CYCLES if clocks == {CYCLES} else "day"
-    places = [place for trend in every for point in trend.points if (place := place_of(point, clock)) is not None]
-    start = 0.0 if clock == CYCLES else min(places, default=0.0)
-    last = max(places, default=1.0)
     tops: dict[str, float] = {}
     for trend in every:
         tallest = max((_top(point) for point in trend.points), default=0.0)
@@ -78,7 +73,19 @@ def scales_of(gears: Sequence[GearTrend]) -> Scales:
     for trend in every:
         if trend.limit is not None:
             tops[trend.quantity] = min(max(tops[trend.quantity], ROOM * trend.limit), TALLEST * trend.limit)
+    return {clock: _scales(clock, [trend for trend in every if clock_of(trend) == clock], tops) for clock in (CYCLES, DAYS)}
+
+
+def _scales(clock: str, trends: Iterable[Trend], tops: dict[str, float]) -> Scales:
+    places = [place for trend in trends for point in trend.points if (place := place_of(point, clock)) is not None]
+    start = 0.0 if clock == CYCLES else min(places, default=0.0)
+    last = max(places, default=1.0)
     return Scales(clock, start, last + AHEAD * max(last - start, 1e-9), last, tops)
+
+
+def clock_of(trend: Trend) -> str:
+    """What a trend is drawn over: what its line is over; without one cycles where all of its inspections have them, else dates."""
+    return trend.clock or (CYCLES if all(point.cycles is not None for point in trend.points) else DAYS)
 
 
 def place_of(point: Point, clock: str) -> float | None:
@@ -92,9 +99,9 @@ def _top(point: Point) -> float:
     return max(filter(math.isfinite, (point.value, point.ends[1])))
 
 
-def trend_panel(trend: Trend, scales: Scales) -> Markup:
+def trend_panel(trend: Trend, by_clock: Mapping[str, Scales]) -> Markup:
     """A quantity of one gear over its inspections, with its limit and its line."""
-    name = trend.quantity
+    name, scales = trend.quantity, by_clock[clock_of(trend)]
     marks = [f'<path class="axis" d="M{SCALE_LEFT} {TOP}V{SCALE_BOTTOM}H{RIGHT}"/>', *_ticks(name, scales)]
     if trend.limit is not None:
         marks.append(f'<path class="limit" d="M{SCALE_LEFT} {scales.y(name, trend.limit):.1f}H{RIGHT}"/>')
@@ -129,7 +136,7 @@ def _ticks(name: str, scales: Scales) -> list[str]:
         along = [(value, f"{1e-6 * value:g}", "middle") for value in ticks(scales.end)]
     else:
         ends = dict.fromkeys((scales.start, scales.last))
-        along = [(day, _date(day), "start" if day == scales.start else "middle") for day in ends]
+        along = [(day, day_words(day), "start" if day == scales.start else "middle") for day in ends]
     for place, words, anchor in along:
         x = scales.x(place)
         marks.append(
@@ -138,14 +145,15 @@ def _ticks(name: str, scales: Scales) -> list[str]:
     return marks
 
 
-def _date(days: float) -> str:
+def day_words(days: float) -> str:
+    """The date so many days after 1970."""
     return (DAY_0 + days * DAY).date().isoformat()
 
 
 def _band(trend: Trend, scales: Scales) -> list[str]:
     """The 95 % interval of the line, with what ranges leave open."""
     line = trend.line
-    if line is None or trend.clock != scales.clock:
+    if line is None:
         return []
     first, begin = _begin(trend, scales)
     low = begin if trend.from_new else first
@@ -165,7 +173,7 @@ def _begin(trend: Trend, scales: Scales) -> tuple[float, float]:
 
 def _line(trend: Trend, scales: Scales) -> list[str]:
     line = trend.line
-    if line is None or trend.clock != scales.clock:
+    if line is None:
         return []
     first, begin = _begin(trend, scales)
     last, end = place_of(trend.last, scales.clock) or 0.0, scales.end

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from dataclasses import replace
 from datetime import datetime, timedelta
 from html import unescape
 
@@ -216,6 +217,19 @@ def test_the_overview_names_gears_and_small_charts_have_numbered_scales(tmp_path
     for y, value in others:  # the scale is that of the limit's line: text stands 2.2 below its tick
         assert (zero[0] - y) / (zero[0] - 2.2 - at_limit) == pytest.approx(value / limit, abs=0.01)
     assert len(re.findall(r'class="along"', chart)) >= 2
+
+
+def test_one_gear_without_cycles_takes_no_line_from_the_others(tmp_path):
+    """Nor do dates that are missing take their dots from gears that have cycles."""
+    by_date = [(replace(one, cycles_run=None), given) for one, given in inspections("B", [20, 40])]
+    undated = [(replace(one, inspected=None), given) for one, given in inspections("C", [20, 40])]
+    store = store_of(tmp_path / "store", [*inspections("A", [20, 40]), *by_date, *undated], LIMITS)
+    run("trend", store.folder, "--quiet")
+    page = (store.folder / "trend" / "trend.html").read_text(encoding="utf-8")
+    for name, along in (("A", "1"), ("B", "2026-01-01"), ("C", "1")):
+        (chart,) = re.findall(rf'<svg [^>]*aria-label="wear_depth_mm of {name}">(.*?)</svg>', page)
+        assert chart.count('class="dot"') == 2 and 'class="fit"' in chart and f">{along}<" in chart
+    assert "Along x: millions of mesh cycles since new, up to 2.6; or the date, 2026-01-01 to 2026-03-02, of gears" in page
 
 
 @pytest.mark.long
