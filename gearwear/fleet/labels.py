@@ -72,15 +72,16 @@ def _time_unit(days: Reach) -> tuple[float, str]:
 
 def _span(span: Reach, unit: float, name: str) -> str:
     def end(value: float) -> str:
-        if value == 0.0:
-            return "now"
         return "never" if math.isinf(value) else significant(value / unit, 2)
 
     if math.isinf(span.value):
         if span.low == 0.0:
-            return "not by its line, may be reached now"
+            return "not by its line, perhaps at any time"
         return "not by its line" if math.isinf(span.low) else f"not before {end(span.low)}{name}"
-    between = f"{end(span.low)} to {end(span.high)}" if math.isfinite(span.high) else f"from {end(span.low)} on"
+    if span.low == 0.0:
+        between = f"up to {end(span.high)}" if math.isfinite(span.high) else "at any time"
+    else:
+        between = f"{end(span.low)} to {end(span.high)}" if math.isfinite(span.high) else f"from {end(span.low)} on"
     return f"{end(span.value)}{name} ({between})"
 
 

@@ -31,6 +31,14 @@ NOTHING_AT_FIRST = {
 }
 """What a new gear has none of: one inspection with its cycles then gives a rate since new."""
 CYCLES, DAYS = "cycle", "day"
+WORN_OFF = ("wear_volume_mm3", "wear_area_mm2")
+"""What does not fall on the same gear."""
+OTHER_GEAR = (
+    "its wear fell from one inspection to the next, so no rate is given: is it the same gear? One that was put in its place needs a gear_id of"
+    " its own"
+)
+NO_RESULT = "no result of the last inspection: of the limits neither can be said"
+"""What is said where older inspections conform."""
 SECONDS = 86400.0
 
 
@@ -288,11 +296,13 @@ def gear_trend(
     late = [name for name in limits if name in trends and order.last & measured - trends[name].inspections]
     if late:
         remarks.append(f"no value of {', '.join(late)} at the last inspection, which has a limit")
+    if judged and trends and order.last - measured:
+        remarks.append(NO_RESULT if len(order.last) == 1 else f"no result of {len(order.last - measured)} of {len(order.last)} inspections that may be the last")
     if trends and order.note:
         remarks.append(order.note)
-    volume = trends.get("wear_volume_mm3")
-    if volume is not None and any(step.falls for step in volume.steps):
-        remarks.append("its worn volume fell from one inspection to the next: is it the same gear?")
+    if any(step.falls for name in WORN_OFF if name in trends for step in trends[name].steps):
+        remarks.append(OTHER_GEAR)
+        trends = {name: replace(trend, clock="", line=None, left=None) for name, trend in trends.items()}
     return GearTrend(gear_id=gear_id, trends=trends, conformity=worst(judged), notes=tuple(remarks))
 
 

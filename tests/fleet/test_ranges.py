@@ -158,12 +158,13 @@ def test_where_neither_can_be_said_the_limit_may_be_reached_now_and_that_is_what
     assert gear.nearest.quantity == QUANTITY and gear.trends["wear_depth_mm"].conformity is Conformity.CONFORMING
     assert (gear.nearest.left.low, gear.nearest.left.value > 0.0) == (0.0, True)
     words = gear_words(gear).replace("\u202f", " ")
-    assert re.match(r"worn volume 14\.00 ± 0\.20 mm³ \(may be 9\.00 to 60\.0\) of 50\.0, limit in .* \(now ", words)
+    assert re.match(r"worn volume 14\.00 ± 0\.20 mm³ \(may be 9\.00 to 60\.0\) of 50\.0, limit in .* \(up to ", words)
 
 
 def test_what_the_last_inspection_proves_the_line_does_not_take_back():
     given = readings([80.0, 20.0, 70.0], std=5.0)
-    trend = trend_of(given, limit=50.0)
+    given = [replace(one, quantity="thickness_loss_mm") for one in given]
+    trend = gear_trend("G1", given, {"thickness_loss_mm": 50.0}).trends["thickness_loss_mm"]
     assert trend.conformity is Conformity.NOT_CONFORMING
     assert (trend.left.value, trend.left.low, trend.left.high) == (0.0, 0.0, 0.0)
 

@@ -118,6 +118,7 @@ def test_a_last_inspection_without_result_cannot_be_said(later):
     assert gear_trend("G1", readings([0.01]), limits, inspections=[later]).conformity is Conformity.NEITHER
     assert gear_trend("G1", readings([0.3]), limits, inspections=[later]).conformity is Conformity.NOT_CONFORMING
     assert gear_trend("G1", readings([0.01]), {}, inspections=[later]).conformity is None
+    assert any(note.startswith("no result of") for note in gear_trend("G1", readings([0.01]), limits, inspections=[later]).notes)
     before = Occasion(DAY - timedelta(60), 0.0)
     assert gear_trend("G1", readings([0.01]), limits, inspections=[before]).conformity is Conformity.CONFORMING
 
@@ -168,6 +169,16 @@ def test_what_was_not_measured_at_the_last_inspection_cannot_be_said():
 def test_a_gear_that_gains_metal_is_doubted():
     gear = gear_trend("G1", readings([2.0, 1.0], std=0.05, quantity="wear_volume_mm3"), {})
     assert "is it the same gear?" in gear.notes[0]
+
+
+def test_a_line_through_two_gears_is_none():
+    """80 µm at 5 mm³, then a new gear in its place: no rate of either, and no day on which the limit is reached."""
+    volumes = readings([2.0, 5.0, 0.5], std=0.05, quantity="wear_volume_mm3")
+    gear = gear_trend("G1", [*volumes, *readings([0.03, 0.08, 0.01])], {"wear_depth_mm": 0.1})
+    depth = gear.trends["wear_depth_mm"]
+    assert (depth.line, depth.left, depth.clock, depth.last.value) == (None, None, "", 0.01)
+    assert gear.conformity is Conformity.CONFORMING
+    assert [step.value for step in gear.trends["wear_volume_mm3"].steps] == [3.0, -4.5]
 
 
 def test_the_most_urgent_comes_first():
