@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
@@ -19,7 +20,11 @@ RESERVED = ("key", "state", "quantity", "scope", "tooth", "flank", "value", "std
 """Columns that the store adds itself."""
 PARTS, UNITS = ("pinion", "gear"), ("mm", "cm", "m", "um", "in")
 NEEDS = "a table (CSV) with the columns gear_id, design, scans, and any of inspected, part, units, before, cycles_run, operator, repeat"
+BY_DAY = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})(?:( \d{2}:\d{2}(?::\d{2})?))?")
+"""A date as spreadsheets with a decimal comma write it: day, month, year, and a time. With slashes nobody knows which is the day."""
 MOST_BYTES = 200_000_000
+THOUSANDS = re.compile(r",\d{3}\b")
+"""A comma before three digits may part thousands or be a decimal one: such a number is refused."""
 MOST_CYCLES = 1e15
 """Revolutions; no gear comes near, and squares of what is far larger have no number."""
 FIRST_YEAR, LAST_YEAR = 1900, 2200
@@ -109,7 +114,7 @@ def read_manifest(path: Path) -> list[ManifestRow]:
     ----------
     path : Path
         CSV with a line of column names; the separator is a comma, a semicolon or a tabulator. Empty lines and lines that begin with # are
-        skipped.
+        skipped. Dates and numbers may be as spreadsheets with a decimal comma write them.
 
     Returns
     -------
@@ -155,7 +160,7 @@ def _text(path: Path) -> str:
     try:
         return data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"{path}: is not text in UTF-8; {NEEDS} is needed") from None
+        raise InputError(f"{path}: is not text in UTF-8, which spreadsheets call CSV UTF-8; {NEEDS} is needed") from None
 
 
 def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, list[str]]]:
@@ -176,7 +181,8 @@ def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, list[str]]]:
 def _check_names(path: Path, line: int, names: list[str]) -> None:
     for name in NEEDED:
         if name not in names:
-            near = get_close_matches(name, names, 1)
+            plain = {re.sub(r"\W+", "_", one.lower()): one for one in names}
+            near = [plain[one] for one in get_close_matches(name, plain, 1)]
             meant = f" ({near[0]!r}?)" if near else ""
             raise InputError(f"{path}: line {line} names no column {name}{meant}; {NEEDS} is needed")
     for name in names:
@@ -225,6 +231,9 @@ def _files(text: str) -> tuple[str, ...]:
 def read_moment(text: str) -> datetime | None:
     """A date as a manifest writes it, with a time or without; None where nothing stands.
 
+    >>> read_moment("2026-03-01T14:30") == read_moment("1.3.2026 14:30")
+    True
+
     Raises
     ------
     InputError
@@ -232,8 +241,9 @@ def read_moment(text: str) -> datetime | None:
     """
     if not text:
         return None
+    by_day = BY_DAY.fullmatch(text)
     try:
-        moment = datetime.fromisoformat(text)
+        moment = datetime.fromisoformat("{3}-{2:0>2}-{1:0>2}{4}".format(text, *by_day.groups("")) if by_day else text)
     except ValueError:
         raise InputError(
             f"inspected = {text[:40]!r}: a date as 2026-03-01, or with a time as 2026-03-01T14:30, would be right"
@@ -249,9 +259,9 @@ def _cycles(text: str) -> float | None:
     if not text:
         return None
     try:
-        cycles = float(text)
+        cycles = float(text if THOUSANDS.search(text) else text.replace(",", "."))
     except ValueError:
         cycles = math.nan
     if not 0.0 <= cycles <= MOST_CYCLES:
-        raise InputError(f"cycles_run = {text[:40]!r}: a number from 0 on, such as 2.5e6, would be right")
+        raise InputError(f"cycles_run = {text[:40]!r}: a number from 0 on, such as 2.5e6 or 2500000, would be right")
     return cycles

@@ -297,7 +297,11 @@ def gear_trend(
     if late:
         remarks.append(f"no value of {', '.join(late)} at the last inspection, which has a limit")
     if judged and trends and order.last - measured:
-        remarks.append(NO_RESULT if len(order.last) == 1 else f"no result of {len(order.last - measured)} of {len(order.last)} inspections that may be the last")
+        remarks.append(
+            NO_RESULT
+            if len(order.last) == 1
+            else f"no result of {len(order.last - measured)} of {len(order.last)} inspections that may be the last"
+        )
     if trends and order.note:
         remarks.append(order.note)
     if any(step.falls for name in WORN_OFF if name in trends for step in trends[name].steps):

@@ -143,7 +143,10 @@ def test_wrong_pair_values_are_named(pair, message):
     ("data", "message"),
     [
         ({}, r"neither \[pinion\] nor \[gear\]"),
-        ({"gear": GEAR, "limits": {"wear_depth_mm": 60}}, r"\[limits\] wear_depth_mm = 60: more than the pitch of .* of µm 0\.06 would"),
+        (
+            {"gear": GEAR, "limits": {"wear_depth_mm": 60}},
+            r"\[limits\] wear_depth_mm = 60: more than the pitch of .* of µm 0\.06 would",
+        ),
         ({"wheel": GEAR}, r"\[wheel\] is unknown; known are pair, pinion, gear, scanner, datum, load, limits"),
         ({"gear": 3}, r"gear = 3: must be a table, written \[gear\]"),
         ({"gear": [GEAR]}, r"gear = .*: must be a table"),

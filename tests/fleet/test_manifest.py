@@ -43,6 +43,18 @@ def test_tables_as_spreadsheets_write_them(read, sign, encoding):
     assert (row.gear_id, row.scans) == ("Ä1", ("a.ply", "b.ply"))
 
 
+def test_dates_and_numbers_of_a_spreadsheet_with_a_decimal_comma(read):
+    head = "gear_id;inspected;design;scans;cycles_run;operator\r\n"
+    rows = read(
+        head
+        + "Räder/12, links;01.03.2026;d.toml;s 0.xyz;1,5E+06;Jörg\r\n齿轮 7;1.12.2026 14:30;d.toml;s.xyz;1500000,5;\r\n;;;;;\r\n",
+        "utf-8-sig",
+    )
+    assert [(row.gear_id, row.inspected, row.cycles_run) for row in rows] == [
+        ("Räder/12, links", datetime(2026, 3, 1), 1.5e6), ("齿轮 7", datetime(2026, 12, 1, 14, 30), 1500000.5)
+    ]  # fmt: skip
+
+
 def test_remarks_with_quotes_and_a_gear_whose_name_begins_with_a_hash(read):
     rows = read('# at 20 C, "cold" room\ngear_id,design,scans\nG1,d,a\n  # "half\nG2,d,b\n"#12",d,c\n#13,d,e\n')
     assert [(row.line, row.gear_id) for row in rows] == [(3, "G1"), (5, "G2"), (6, "#12")]
@@ -60,7 +72,11 @@ HEAD = "gear_id,inspected,design,scans,part,units,cycles_run,repeat\n"
     (HEAD + "G,,d.toml,s.ply\n", "line 2 has 4 cells and line 1 names 8 columns"),
     (HEAD + ",,d.toml,s.ply,,,,\n", "line 2: gear_id is empty"),
     (HEAD + "G,,d.toml,;,,,,\n", "line 2: scans = ';': at least one file"),
-    (HEAD + "G,1.3.2026,d.toml,s.ply,,,,\n", "line 2: inspected = '1.3.2026': a date as 2026-03-01"),
+    (HEAD + "G,1/3/2026,d.toml,s.ply,,,,\n", "line 2: inspected = '1/3/2026': a date as 2026-03-01"),
+    (HEAD + "G,31.2.2026,d.toml,s.ply,,,,\n", "line 2: inspected = '31.2.2026': a date as 2026-03-01"),
+    ("Gear ID,design,scans\n", "line 1 names no column gear_id ('Gear ID'?)"),
+    (HEAD + 'G,,d.toml,s.ply,,,"1,500",\n', "line 2: cycles_run = '1,500': a number from 0 on, such as 2.5e6 or 2500000"),
+    (HEAD + "G,,d.toml,s.ply,,,1.500.000,\n", "cycles_run = '1.500.000'"),
     (HEAD + "G,2026-03-01T10:00+01:00,d.toml,s.ply,,,,\n", "local time without a zone"),
     (HEAD + "G,0001-01-01,d.toml,s.ply,,,,\n", "line 2: inspected = '0001-01-01': a year from 1900 to 2200 would be right"),
     (HEAD + "G,9999-12-30T23:00,d.toml,s.ply,,,,\n", "line 2: inspected = '9999-12-30T23:00': a year from 1900 to 2200"),
