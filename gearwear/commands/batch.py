@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from gearwear.fleet.batch import Crew, Tally, Tell
     from gearwear.fleet.manifest import ManifestRow
     from gearwear.fleet.outcome import Outcome
+    from gearwear.fleet.store import Store
     from gearwear.fleet.task import Job
 
 DESCRIPTION = """\
@@ -38,6 +39,8 @@ failed for another reason with the next batch.
 The work is done by as many processes as this machine has processors, or by the workers
 of a Dask scheduler. Needs the extra: pip install 'gearwear[batch]'."""
 
+WIDTH = 80
+"""Letters of a line at the end."""
 SHOWN = 10
 """Lines on refused and failed scans at the end."""
 
@@ -82,7 +85,7 @@ def _run(arguments: Namespace) -> None:
     if not arguments.quiet:
         from gearwear.report.words.terminal import print_lines
 
-        print_lines(_summary(tally, store))
+        print_lines(_summary(tally, store, arguments.fleet))
 
 
 def _check(arguments: Namespace) -> None:
@@ -161,20 +164,28 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
-def _summary(tally: Tally, store: Any) -> list[tuple[str, str]]:
+def _summary(tally: Tally, store: Store, manifest: Path) -> list[tuple[str, str]]:
     """The result in some lines."""
+    from gearwear.fleet.manifest import NEEDED, OPTIONAL
     from gearwear.fleet.outcome import State
+    from gearwear.fleet.words import wrapped
 
     lines = [
         (f"{tally.total} scans: {tally.done} done, {tally.refused} refused, {tally.failed} failed", "bold"),
         (f"{tally.ended} of them in this run, the others before" if tally.ended < tally.total else "", ""),
     ]
+    if tally.dropped:
+        more = f"! {tally.dropped} scans of the earlier list of this name are not in it, and are left out of trend and gauge; a list with a name of its own would keep them"
+        lines += wrapped(more, WIDTH, "yellow", 2)
     states = store.states()
     wrong = [(row, states[row.key]) for row in store.listed() if states.get(row.key) in (State.REFUSED, State.FAILED)]
     for row, state in wrong[:SHOWN]:
-        lines.append(
-            (f"! {row.cells['gear_id']} {row.cells.get('inspected', '')} {state}: {store.why(row.key, state)}", "yellow")
-        )
+        said = " ".join(filter(None, ("!", row.cells["gear_id"], row.cells.get("inspected", ""), f"{state}:")))
+        lines += wrapped(f"{said} {store.why(row.key, state)}", WIDTH, "yellow", 2)
     if len(wrong) > SHOWN:
         lines.append((f"! and {len(wrong) - SHOWN} more: the files *.refused and *.failed in the store say why", "yellow"))
+    known = {*NEEDED, *OPTIONAL, "key"}
+    more_columns = dict.fromkeys(name for row in store.listed_in(manifest.name) for name in row.cells if name not in known)
+    if more_columns:
+        lines += wrapped(f"Further columns, kept as they are: {', '.join(more_columns)}", WIDTH, "dim", 2)
     return [*(line for line in lines if line[0]), (f"Written to {store.folder}", "dim")]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -33,6 +33,8 @@ class Tally:
         Scans that this batch had to compare.
     ended : int
         Of those, how many have an outcome.
+    dropped : int
+        Scans of an earlier list of the same name that are not in the manifest: trend and gauge do not see them any more.
     """
 
     total: int
@@ -41,6 +43,7 @@ class Tally:
     failed: int = 0
     to_do: int = 0
     ended: int = 0
+    dropped: int = 0
 
     def after(self, outcome: Outcome) -> Tally:
         """With one more."""
@@ -82,6 +85,8 @@ def run_batch(manifest: Path, store: Store, crew: Crew, options: Options, memory
         store.keep_digests(digests)
         keys = [key_of(row, held, options, gearwear.__version__) for row, held in zip(rows, contents, strict=True)]
         limits = {name: read_limits(folder / name).by_quantity() for name in {row.design for row in rows}}
+        now = {_scan_of(row.cells) for row in rows}
+        dropped = sum(_scan_of(listed.cells) not in now for listed in store.listed_in(manifest.name))
         store.keep_manifest(manifest.name, [(row, key, limits[row.design]) for row, key in zip(rows, keys, strict=True)])
         states = store.states()
         before = [states.get(key) for key in keys]
@@ -90,7 +95,7 @@ def run_batch(manifest: Path, store: Store, crew: Crew, options: Options, memory
             for key, row, held, state in zip(keys, rows, contents, before, strict=True)
             if state in (None, State.FAILED)
         ]
-        tally = Tally(len(rows), before.count(State.DONE), before.count(State.REFUSED), to_do=len(jobs))
+        tally = Tally(len(rows), before.count(State.DONE), before.count(State.REFUSED), to_do=len(jobs), dropped=dropped)
         tell(tally, None, None)
         if jobs:
             row_of = {job.key: job.row for job in jobs}
@@ -100,3 +105,8 @@ def run_batch(manifest: Path, store: Store, crew: Crew, options: Options, memory
                     tally = tally.after(outcome)
                     tell(tally, row_of[outcome.key], outcome)
     return tally
+
+
+def _scan_of(cells: Mapping[str, str]) -> tuple[str, ...]:
+    """What makes a row of a list the same scan in another one, whatever else of it was mended."""
+    return tuple(cells.get(name, "") for name in ("gear_id", "inspected", "scans"))

@@ -25,8 +25,6 @@ ANSWER = 10.0
 """Seconds within which a scheduler must answer."""
 OVER = "worker-restart-memory"
 """What a scheduler notes of a worker that was ended for its memory."""
-GONE = "the Dask scheduler is gone; what was done is in the store, and the same command goes on from there"
-"""What is said of one that does not answer any more."""
 
 
 @contextmanager
@@ -72,7 +70,7 @@ def local_workers(number: int, memory: float) -> Iterator[Client]:
             client = held.enter_context(Client(cluster))
         except OSError as error:
             raise InputError(
-                f"--workers {number}: cannot be started ({_reason(error)}); fewer, or --workers 0, would be right"
+                f"workers = {number}: cannot be started ({_reason(error)}); fewer, or 0 for none beside this process, would be right"
             ) from None
         yield client
 
@@ -107,13 +105,13 @@ def remote_workers(address: str) -> Iterator[Client]:
             workers = client.get_versions(packages=["gearwear"])["workers"]
         except (OSError, ValueError) as error:
             raise InputError(
-                f"--scheduler {address}: no Dask scheduler answers ({_reason(error)}); the address that dask scheduler printed, such as tcp://10.0.0.5:8786, would be right"
+                f"scheduler = {address}: no Dask scheduler answers ({_reason(error)}); the address that dask scheduler printed, such as tcp://10.0.0.5:8786, would be right"
             ) from None
         for worker, about in workers.items():
             its_version = about["packages"].get("gearwear")
             if its_version != gearwear.__version__:
                 raise InputError(
-                    f"--scheduler {address}: worker {worker} has {f'gearwear {its_version}' if its_version else 'no gearwear'}; {gearwear.__version__} as here would be right"
+                    f"scheduler = {address}: worker {worker} has {f'gearwear {its_version}' if its_version else 'no gearwear'}; {gearwear.__version__} as here would be right"
                 )
         yield client
 
@@ -124,17 +122,25 @@ def _reason(error: Exception) -> str:
 
 
 @contextmanager
-def _answering() -> Iterator[None]:
+def _answering(client: Client) -> Iterator[None]:
     """Round what is asked of a scheduler: one that refuses is told as gone."""
     try:
         yield
     except OSError:
-        raise InputError(GONE) from None
+        raise _gone(client) from None
+
+
+def _gone(client: Client) -> InputError:
+    """What is said of a scheduler that does not answer any more."""
+    address = getattr(client.scheduler, "address", "")
+    return InputError(
+        f"scheduler = {address}: the Dask scheduler is gone; what was done is in the store, and the same batch goes on from there"
+    )
 
 
 def dashboard(client: Client) -> str:
     """Address of the page that shows the workers at work; "" where there is none: it is drawn by bokeh."""
-    with _answering():
+    with _answering(client):
         serves = "dashboard" in client.scheduler_info().get("services", {}) and find_spec("bokeh") is not None
         return str(client.dashboard_link) if serves else ""
 
@@ -160,7 +166,7 @@ def outcomes(client: Client, jobs: Sequence[Job], work: Work = run) -> Iterator[
     it cannot be seen. So they are tried once more at the end, each alone: then a scan whose worker dies has killed it.
     """
     suspects: list[Job] = []
-    with _answering():  # what fails where an outcome goes to does not come back here
+    with _answering(client):  # what fails where an outcome goes to does not come back here
         for job, outcome in _sent(client, jobs, work, math.inf):
             if outcome is None:
                 suspects.append(job)
@@ -190,7 +196,7 @@ def _sent(client: Client, jobs: Iterable[Job], work: Work, most: float) -> Itera
     for future in finished:
         job = under_way.pop(future)
         if future.status in ("cancelled", "lost"):
-            raise InputError(GONE)
+            raise _gone(client)
         error = future.exception() if future.status == "error" else None
         if isinstance(error, KilledWorker):
             yield job, None

@@ -243,7 +243,7 @@ def read_moment(text: str) -> datetime | None:
         return None
     by_day = BY_DAY.fullmatch(text)
     try:
-        moment = datetime.fromisoformat("{3}-{2:0>2}-{1:0>2}{4}".format(text, *by_day.groups("")) if by_day else text)
+        moment = datetime.fromisoformat("{2}-{1:0>2}-{0:0>2}{3}".format(*by_day.groups("")) if by_day else text)
     except ValueError:
         raise InputError(
             f"inspected = {text[:40]!r}: a date as 2026-03-01, or with a time as 2026-03-01T14:30, would be right"

@@ -74,14 +74,17 @@ class Store:
         InputError
             If the folder cannot be written to, or another batch is at work in it.
         """
-        check_folder(self.folder)
+        try:
+            check_folder(self.folder)
+        except InputError as error:
+            raise InputError(f"store = {error}") from None
         with ExitStack() as held:
             with self._writing():
                 (self.folder / MANIFESTS).mkdir(parents=True, exist_ok=True)
                 alone = held.enter_context(tried(self.folder))
                 if alone is False:
                     raise InputError(
-                        f"--out {self.folder}: another batch is at work there; its end, or another folder, would be right"
+                        f"store = {self.folder}: another batch is at work there; its end, or another folder, would be right"
                     )
                 for folder in (self.folder, self.folder / MANIFESTS):
                     for remains in folder.glob(f"{HIDDEN}*"):
@@ -95,7 +98,7 @@ class Store:
         try:
             yield
         except OSError as error:
-            raise unwritable(self.folder, error) from None
+            raise InputError(f"store = {unwritable(self.folder, error)}") from None
 
     def states(self) -> dict[str, State]:
         """State of every scan that has one, by key.
@@ -116,7 +119,7 @@ class Store:
             pass
         except OSError as error:
             raise InputError(
-                f"{self.folder}: cannot be read ({error.strerror or error}); the right to read it is needed"
+                f"store = {self.folder}: cannot be read ({error.strerror or error}); the right to read it is needed"
             ) from None
         return {stem: next(state for state, suffix in SUFFIXES.items() if suffix in of_scan) for stem, of_scan in found.items()}
 
@@ -180,7 +183,18 @@ class Store:
                 {"key": key, **row.cells, **{f"limit_{quantity}": f"{value:.15g}" for quantity, value in limits.items()}}
             )
         with self._writing():
-            write_data(self.folder / MANIFESTS / f"{Path(name).stem}.csv", text.getvalue().encode("utf-8", "surrogateescape"))
+            write_data(self._kept(name), text.getvalue().encode("utf-8", "surrogateescape"))
+
+    def _kept(self, name: str) -> Path:
+        """Where the manifest of a name is kept."""
+        return self.folder / MANIFESTS / f"{Path(name).stem}.csv"
+
+    def listed_in(self, name: str) -> list[Listed]:
+        """The rows of the manifest of a name as it was last run; none where it was not, or is damaged."""
+        try:
+            return list(_listed(self._kept(name)))
+        except InputError:
+            return []
 
     def listed(self) -> list[Listed]:
         """The rows of all manifests, each key once.
@@ -192,7 +206,7 @@ class Store:
         """
         files = sorted((self.folder / MANIFESTS).glob("*.csv"))
         if not files:
-            raise InputError(f"{self.folder}: holds no fleet; the folder that gearwear batch wrote to (--out) would be right")
+            raise InputError(f"store = {self.folder}: holds no fleet; the folder that gearwear batch wrote to would be right")
         return list({row.key: row for file in files for row in _listed(file)}.values())
 
 

@@ -189,6 +189,30 @@ def test_the_command_in_this_process(fleet, tmp_path):
     assert (again.status, again.out, again.err) == (0, "", "")
 
 
+def test_the_end_says_why_in_full_and_what_columns_mean_nothing_to_it(fleet):
+    manifest, store, _ = fleet
+    said = command("batch", manifest, "--out", store, "--workers", "0")
+    assert "…" not in said.out and max(map(len, said.out.splitlines())) <= 80
+    (why,) = (path.read_text(encoding="utf-8").strip() for path in store.glob("*.refused"))
+    assert "".join(why.split()) in "".join(said.out.split())
+    assert "Further columns, kept as they are: site\n" in said.out
+
+
+def test_a_list_in_the_place_of_another_says_what_it_leaves_out(tmp_path):
+    """One a month, all called fleet.csv: the earlier months were gone from the trend, and nothing said so."""
+    for month in ("1", "2"):
+        (tmp_path / month).mkdir()
+        lines = (
+            sections(tmp_path / month, 2 if month == "1" else 1).read_text(encoding="utf-8").replace("2026-01", f"2026-0{month}")
+        )
+        (tmp_path / month / "fleet.csv").write_text(lines, encoding="utf-8")
+    first, again, second = (
+        command("batch", tmp_path / month / "fleet.csv", "--out", tmp_path / "store", "--workers", "0") for month in "112"
+    )
+    assert "earlier list" not in first.out + again.out
+    assert "! 3 scans of the earlier list of this name are not in it" in second.out
+
+
 @pytest.mark.parametrize(("arguments", "said"), [
     (["--workers", "2", "--scheduler", "tcp://x:1"], "--workers and --scheduler both say who works"),
     (["--workers", "-1"], "--workers -1: a number from 0 on"),

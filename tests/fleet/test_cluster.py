@@ -126,7 +126,7 @@ def test_where_no_scheduler_answers(tmp_path, monkeypatch):
     monkeypatch.setattr("gearwear.fleet.cluster.ANSWER", 0.2)
     said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--scheduler", "tcp://127.0.0.1:1")
     assert said.status == 2
-    assert "--scheduler tcp://127.0.0.1:1: no Dask scheduler answers" in said.err
+    assert "scheduler = tcp://127.0.0.1:1: no Dask scheduler answers" in said.err
     assert said.err.count("\n") == 1
 
 
@@ -145,7 +145,9 @@ def test_a_scheduler_that_refuses_midway_is_told_as_such_and_not_as_a_full_disk(
 
     with pytest.raises(InputError) as caught:
         run_batch(sections(tmp_path, 1), Store(tmp_path / "store"), crew, Options(), 4e9, lambda *told: None)
-    assert str(caught.value).startswith("the Dask scheduler is gone; what was done is in the store")
+    assert re.match(
+        r"scheduler = \w+://\S+: the Dask scheduler is gone; what was done is in the store, and the same batch", str(caught.value)
+    )
 
 
 def test_a_scheduler_that_is_gone_before_it_says_its_workers(tmp_path, monkeypatch):
@@ -163,7 +165,7 @@ def test_a_scheduler_that_is_gone_before_it_says_its_workers(tmp_path, monkeypat
     said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--scheduler", "tcp://10.0.0.5:8786")
     assert said.status == 2
     assert (
-        f"--scheduler tcp://10.0.0.5:8786: no Dask scheduler answers ([Errno {errno.ECONNREFUSED}] Connection refused)"
+        f"scheduler = tcp://10.0.0.5:8786: no Dask scheduler answers ([Errno {errno.ECONNREFUSED}] Connection refused)"
         in said.err
     )
     assert said.err.count("\n") == 1
@@ -174,7 +176,7 @@ def test_workers_that_cannot_be_started(tmp_path, monkeypatch):
     said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--workers", "2")
     assert said.status == 2
     assert (
-        f"--workers 2: cannot be started ([Errno {errno.ECONNREFUSED}] Connection refused); fewer, or --workers 0, would be right"
+        f"workers = 2: cannot be started ([Errno {errno.ECONNREFUSED}] Connection refused); fewer, or 0 for none beside this process, would"
         in said.err
     )
     assert said.err.count("\n") == 1
