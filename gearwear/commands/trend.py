@@ -15,7 +15,8 @@ gearwear batch wrote.
 
 Limits are those of the designs, [limits]; whether they are kept is decided by ISO
 14253-1. Exit status: 0 all gears conform, or there are no limits; 1 one does not; 3 none
-does not, and of one neither can be said; 2 an argument is wrong.
+does not, and of one neither can be said, or no scan of it gave a result; 2 an argument
+is wrong.
 
 Writes trend.html, trend.csv (a row for each gear and quantity), inspections.csv (each
 inspection too), teeth.csv (each tooth, under one number in every inspection), and all
@@ -33,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> int:
-    from gearwear.fleet.conformity import exit_status
+    from gearwear.fleet.conformity import Conformity, exit_status
     from gearwear.fleet.pages import trend_page
     from gearwear.fleet.reading import read_fleet, trends
     from gearwear.fleet.results import POINT_COLUMNS, TREND_COLUMNS, point_rows, trend_rows
@@ -58,4 +59,5 @@ def _run(arguments: Namespace) -> int:
         files += write_tables(stage, "teeth", fleet.teeth, TEETH_COLUMNS)
     if not arguments.quiet:
         print_lines([*trend_lines(fleet, gears), *written(out, files)])
-    return exit_status(gear.conformity for gear in gears if gear.conformity is not None)
+    judged = (gear.conformity if gear.trends else gear.conformity or Conformity.NEITHER for gear in gears)
+    return exit_status(state for state in judged if state is not None)

@@ -80,6 +80,12 @@ def test_exit_status_for_scripts(tmp_path, depths, limits, status):
     assert run("gauge", store.folder, "--quiet").status == 0
 
 
+def test_a_gear_without_any_result_is_not_passed_for_want_of_limits(tmp_path):
+    """Its design was refused, for its limits say: they are not known, and exit status 0 said that all gears conform."""
+    scans = [*inspections("A", [60]), (row("B", START), State.REFUSED)]
+    assert run("trend", store_of(tmp_path / "store", scans).folder, "--quiet").status == 3
+
+
 def test_a_worn_gear_is_not_called_conforming_by_an_older_scan_without_a_date(tmp_path):
     """1 µm when new, undated; 500 µm after a million cycles, of 100 µm allowed."""
     new, worn = (report((0.02 * depth, 0.05), (depth, 4.0), (1e-3 * depth, 0.004)) for depth in (1.0, 500.0))
