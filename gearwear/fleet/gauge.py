@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.special import chdtrc, chdtri
 
+from gearwear.arrays import Floats
 from gearwear.fleet.anova import SHARE, GaugeVariance, gauge_variance
 from gearwear.fleet.significance import beyond_chance
 
@@ -25,6 +27,10 @@ class Repeat:
     operator, repeat : str
     value, std : float
         nan where no standard deviation is stated.
+    down, up : float
+        How far below and above the range of the report reaches, where it leaves more open.
+    found : bool
+        False where no wear was found: then the value is 0 for want of one.
     """
 
     part: str
@@ -32,12 +38,17 @@ class Repeat:
     repeat: str
     value: float
     std: float
+    down: float = 0.0
+    up: float = 0.0
+    found: bool = True
 
 
 class Accord(StrEnum):
     """Of the scatter of repeats with the stated standard deviations."""
 
     MORE = "repeats contradict the stated ±"
+    OPERATORS = "operators contradict the stated ±"
+    """Repeats by the same operator do not, but those by different ones do."""
     ALIKE = "repeats agree with the stated ±"
     LESS = "repeats scatter less than the stated ±"
     UNKNOWN = "no ± is stated"
@@ -53,7 +64,7 @@ class Scatter:
         Root mean square of deviation over stated standard deviation, with its 95 % interval.
     degrees : int
     p_value : float
-        Chance of so much scatter where the stated ± is right.
+        Chance of so much scatter where the stated ± is right, and the ranges.
     """
 
     ratio: float
@@ -74,7 +85,7 @@ class GaugeStudy:
         In the balanced study.
     repeats : int
     left_out : int
-        Scans that did not fit in a balanced study.
+        Scans that did not fit in a balanced study, those that found no wear with them.
     variance : GaugeVariance or None
         None where there is no balanced study of two parts.
     stated : float
@@ -113,7 +124,7 @@ def gauge_study(quantity: str, flank: str, scans: Sequence[Repeat]) -> GaugeStud
         None where no gear was scanned twice by the same operator.
     """
     cells: dict[tuple[str, str], list[Repeat]] = {}
-    for scan in sorted(scans, key=lambda scan: (scan.part, scan.operator, scan.repeat)):
+    for scan in sorted((scan for scan in scans if scan.found), key=lambda scan: (scan.part, scan.operator, scan.repeat)):
         cells.setdefault((scan.part, scan.operator), []).append(scan)
     repeated = {place: cell for place, cell in cells.items() if len(cell) > 1}
     if not repeated:
@@ -140,39 +151,55 @@ def gauge_study(quantity: str, flank: str, scans: Sequence[Repeat]) -> GaugeStud
 
 def in_accord(studies: Sequence[GaugeStudy]) -> list[GaugeStudy]:
     """The studies with what their repeats say of the stated ±: contradicted only where chance is out of question among all of them."""
-    chances = [math.nan if study.repeatability is None else study.repeatability.p_value for study in studies]
+    both = [*(study.repeatability for study in studies), *(study.reproducibility for study in studies)]
+    more = beyond_chance([math.nan if scatter_ is None else scatter_.p_value for scatter_ in both])
+    number = len(studies)
     return [
-        replace(study, accord=_accord(study.repeatability, more))
-        for study, more in zip(studies, beyond_chance(chances), strict=True)
+        replace(study, accord=_accord(study.repeatability, repeats, operators))
+        for study, repeats, operators in zip(studies, more[:number], more[number:], strict=True)
     ]
 
 
-def _accord(repeats: Scatter | None, more: bool) -> Accord:
+def _accord(repeats: Scatter | None, more: bool, operators: bool) -> Accord:
     if repeats is None:
         return Accord.UNKNOWN
-    if more:
-        return Accord.MORE
+    if more or operators:
+        return Accord.MORE if more else Accord.OPERATORS
     return Accord.LESS if repeats.high < 1.0 else Accord.ALIKE
 
 
 def scatter(groups: Iterable[Sequence[Repeat]]) -> Scatter | None:
     """Scatter within groups over the stated standard deviations: Σ ((x − weighted mean) / u)² is χ² with n − 1 degrees of freedom a group.
 
-    Scans without a stated standard deviation are left out; None where no group has two others.
+    Scans without a stated standard deviation are left out; None where no group has two others. For the chance each value counts from the nearest
+    end of its range: what ranges can explain contradicts nothing.
     """
-    square, degrees = 0.0, 0
+    square, least_square, degrees = 0.0, 0.0, 0
     for group in groups:
-        known = [(scan.value, scan.std) for scan in group if scan.std > 0.0]
+        known = [(scan.value, scan.std, scan.down, scan.up) for scan in group if scan.std > 0.0]
         if len(known) > 1:
-            value, std = np.array(known).T
+            value, std, down, up = np.array(known).T
             mean = np.average(value, weights=1.0 / std**2)
-            square += float(np.square((value - mean) / std).sum())
+            off = float(np.square((value - mean) / std).sum())
+            square += off
+            least_square += _least_square(value - down, value + up, std) if down.any() or up.any() else off
             degrees += len(known) - 1
     if not degrees:
         return None
     tail = 0.5 * (1.0 - SHARE)
-    low, high = (math.sqrt(square / float(chdtri(degrees, share))) for share in (tail, 1.0 - tail))
-    return Scatter(math.sqrt(square / degrees), low, high, degrees, float(chdtrc(degrees, square)))
+    least, most = (math.sqrt(square / float(chdtri(degrees, share))) for share in (tail, 1.0 - tail))
+    return Scatter(math.sqrt(square / degrees), least, most, degrees, float(chdtrc(degrees, least_square)))
+
+
+def _least_square(low: Floats, high: Floats, std: Floats) -> float:
+    """Σ ((distance from a mean to a range) / u)² for the mean of which it is least: where what pulls up is as much as what pulls down."""
+    weights = 1.0 / np.square(std)
+
+    def pull(mean: float) -> float:
+        return float(weights @ (mean - np.clip(mean, low, high)))
+
+    mean = brentq(pull, low.min(), high.max())
+    return float(np.square((mean - np.clip(mean, low, high)) / std).sum())
 
 
 def _balanced(sizes: Mapping[tuple[str, str], int]) -> tuple[tuple[str, ...], tuple[str, ...], int]:

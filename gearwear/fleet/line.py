@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from scipy.special import chdtrc, ndtri, stdtrit
 
 from gearwear.arrays import Floats
+from gearwear.design.quantity import NORMAL_95
 from gearwear.fleet.significance import LEVEL, two_sided
 
 BENT = 0.05
@@ -105,6 +106,16 @@ class FittedLine:
 def interval(value: float, down: float, up: float, expanded: float) -> tuple[float, float]:
     """The ends of an interval: as far as a range goes, and its scatter beyond."""
     return value - down - expanded, value + up + expanded
+
+
+def beyond(value: float, std: float, low: float, high: float) -> tuple[float, float]:
+    """How far below and above a number its range reaches, where that is further than the 95 % of its scatter; else 0.
+
+    >>> beyond(10.0, 1.0, 8.04, 15.0), beyond(10.0, 1.0, math.nan, math.nan)
+    ((0.0, 5.0), (0.0, 0.0))
+    """
+    own, down, up = NORMAL_95 * std * (1.0 + 1e-9), value - low, high - value
+    return down if down > own else 0.0, up if up > own else 0.0
 
 
 def chance_of(value: float, down: float, up: float, std: float, degrees: float = math.inf) -> float:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gearwear.fleet.gauge import GaugeStudy, Repeat, gauge_study, in_accord
+from gearwear.fleet.line import beyond
 from gearwear.fleet.manifest import read_moment, shown_time
 from gearwear.fleet.order import Occasion, order_of
 from gearwear.fleet.outcome import State
@@ -154,19 +155,18 @@ def _known(value: float | None) -> float:
 def gauge_studies(fleet: StoredFleet) -> tuple[list[GaugeStudy], dict[tuple[str, str], list[Repeat]]]:
     """The gauge study of every quantity, and the scans behind each, by quantity and flank.
 
-    A part is a gear at one inspection: between two inspections it wears.
+    A part is a gear at the same cycles, whoever scanned it on which day; where these are not known, at one inspection: between two it wears.
     """
     inspections = {key: one for rows in _by_gear(fleet.rows).values() for key, one in _inspections(rows).items()}
     scans: dict[tuple[str, str], list[Repeat]] = {}
     for number in fleet.numbers:
         if number["converged"]:
+            std, low, high = (_known(number[name]) for name in ("std", "low", "high"))
+            part = _part(number["gear_id"], _inspection(number, inspections))
             repeat = Repeat(
-                _part(number["gear_id"], _inspection(number, inspections)),
-                number["operator"],
-                number["repeat"],
-                number["value"],
-                _known(number["std"]),
-            )
+                part, number["operator"], number["repeat"], number["value"], std, *beyond(number["value"], std, low, high),
+                found=std > 0.0 or not math.isfinite(high),
+            )  # fmt: skip
             scans.setdefault((number["quantity"], number["flank"]), []).append(repeat)
     order = {name: i for i, name in enumerate(QUANTITIES)}
     places = sorted(scans, key=lambda place: (order.get(place[0], len(order)), *place))
@@ -179,8 +179,9 @@ def _part(gear_id: str, inspection: Occasion) -> str:
 
     >>> from datetime import datetime
     >>> _part("G1", Occasion(datetime(2026, 3, 1), 1.5e6)), _part("G1", Occasion(which=1))
-    ('G1 2026-03-01 1500000 cycles', 'G1 inspection 2')
+    ('G1 1500000 cycles', 'G1 inspection 2')
     """
-    run = "" if inspection.cycles is None else f"{inspection.cycles:.15g} cycles"
+    if inspection.cycles is not None:
+        return f"{gear_id} {inspection.cycles:.15g} cycles"
     which = f"inspection {inspection.which + 1}" if inspection.which else ""
-    return " ".join(filter(None, (gear_id, shown_time(inspection.inspected), run, which)))
+    return " ".join(filter(None, (gear_id, shown_time(inspection.inspected), which)))

@@ -12,7 +12,7 @@ import numpy as np
 
 from gearwear.design.quantity import NORMAL_95
 from gearwear.fleet.conformity import COVERAGE, GOOD_TO_BAD, Conformity, conformity, worst
-from gearwear.fleet.line import FittedLine, Reach, chance_of, fit_line, interval, line_from_new, reaches
+from gearwear.fleet.line import FittedLine, Reach, beyond, chance_of, fit_line, interval, line_from_new, reaches
 from gearwear.fleet.order import Occasion, Order, order_of
 from gearwear.fleet.significance import discoveries
 
@@ -112,9 +112,7 @@ class Point:
     @property
     def open(self) -> tuple[float, float]:
         """How far below and above the range reaches where that is beyond the scatter's own 95 %; else 0."""
-        own = NORMAL_95 * self.noise * (1.0 + 1e-9)
-        down, up = self.value - self.low, self.high - self.value
-        return down if down > own else 0.0, up if up > own else 0.0
+        return beyond(self.value, self.noise, self.low, self.high)
 
     @property
     def ends(self) -> tuple[float, float]:

@@ -26,7 +26,10 @@ SAME_TEETH = (
     "Numbers are those of the whole gear, its worst as a rule. Numbers of single teeth stand in teeth.csv, under the tooth numbers of the gear's"
     " first scan: which tooth is which, and which end is up, is told by pitch, form, marks and damage of the gear, with the probability beside it."
 )
-NOTHING_REPEATED = "No gear was scanned twice at the same inspection by the same operator: there is nothing to study."
+NOTHING_REPEATED = (
+    "No gear was scanned twice at the same inspection by the same operator: there is nothing to study. Scans of one inspection have the same"
+    " cycles_run, or where that is not known the same inspected, to the minute if it has a time."
+)
 REPEATS_CANNOT = (
     "What repeats alike, as a coat or a scale does, no repeat can show: it is in the stated ± and not in the scatter."
 )
@@ -134,26 +137,42 @@ def gauge_lines(studies: Sequence[GaugeStudy], width: int = 80) -> list[tuple[st
     lines = [(study_words(studies), "dim"), ("", ""), *wrapped(accord_words(studies), width, "bold"), ("", "")]
     lines.append((f"  {'':<{NAME}}{'repeating':>12}{'operators':>10}{'GRR':>6}{'ndc':>5}  repeats / stated", "dim"))
     for study in studies:
-        lines.append((f"  {gauge_line(study)}", "yellow" if study.accord is Accord.MORE else ""))
+        lines.append((f"  {gauge_line(study)}", "yellow" if study.accord in (Accord.MORE, Accord.OPERATORS) else ""))
     return [*lines, ("", "")]
 
 
 def study_words(studies: Sequence[GaugeStudy]) -> str:
     """How large the study is, by its largest quantity."""
     study = max(studies, key=lambda study: len(study.parts) * len(study.operators) * study.repeats)
-    return f"{counted(len(study.parts), 'gear')}, {counted(len(study.operators), 'operator')}, {counted(study.repeats, 'repeat')}"
+    left_out = f"; {counted(study.left_out, 'scan')} without a match left out" if study.left_out else ""
+    return f"{counted(len(study.parts), 'gear')}, {counted(len(study.operators), 'operator')}, {counted(study.repeats, 'repeat')}{left_out}"
 
 
 def accord_words(studies: Sequence[GaugeStudy]) -> str:
     """What repeats say of the stated ±, all quantities together."""
     judged = [study for study in studies if study.accord is not Accord.UNKNOWN]
-    more = [title_of(study.quantity, study.flank) for study in judged if study.accord is Accord.MORE]
+    more, operators = (
+        [title_of(study.quantity, study.flank) for study in judged if study.accord is accord]
+        for accord in (Accord.MORE, Accord.OPERATORS)
+    )
     if not judged:
         return "No quantity with a stated ± was repeated."
-    if not more:
-        return f"Repeats contradict the stated ± of none of {counted(len(judged), 'quantity', 'quantities')}."
-    named = ", ".join(more[:3]) + (f" and {len(more) - 3} more" if len(more) > 3 else "")
-    return f"Repeats contradict the stated ± of {len(more)} of {counted(len(judged), 'quantity', 'quantities')}: {named}."
+    of_all = f"of {counted(len(judged), 'quantity', 'quantities')}"
+    said = [f"Repeats contradict the stated ± of {_named(more)} {of_all}{_which(more)}."]
+    if operators:
+        said.append(
+            f"Scans by different operators contradict it, beyond their repeats, of {_named(operators)}{_which(operators)}."
+        )
+    return " ".join(said)
+
+
+def _named(names: Sequence[str]) -> str:
+    return str(len(names) or "none")
+
+
+def _which(names: Sequence[str]) -> str:
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return f": {', '.join(names[:3])}{more}" if names else ""
 
 
 def gauge_line(study: GaugeStudy) -> str:

@@ -8,10 +8,12 @@ from datetime import datetime
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 
 from gearwear.fleet.gauge import Accord, Repeat, gauge_study, in_accord, scatter
 from gearwear.fleet.reading import gauge_studies, read_fleet
+from gearwear.fleet.words import accord_words
 from tests.fleet.fleets import report, row, store_of
 
 
@@ -83,6 +85,56 @@ def test_operators_that_differ_show_as_reproducibility():
     )  # of two operators half a unit apart
 
 
+def test_operators_that_differ_contradict_the_stated_where_their_own_repeats_do_not():
+    """Three operators, 12 µm apart at ± 3: the verdict said that nothing contradicts."""
+    off = {"A": -12.0, "B": 0.0, "C": 12.0}
+    given = scans(np.random.default_rng(8), stated=3.0, true=3.0, operators="ABC")
+    studies = in_accord([gauge_study("wear_depth_mm", "", [replace(one, value=one.value + off[one.operator]) for one in given])])
+    assert studies[0].accord is Accord.OPERATORS
+    assert accord_words(studies) == (
+        "Repeats contradict the stated ± of none of 1 quantity. Scans by different operators contradict it, beyond their repeats, of 1: deepest wear."
+    )
+    (alike,) = in_accord([gauge_study("wear_depth_mm", "", given)])
+    assert alike.accord is Accord.ALIKE
+
+
+def test_two_answers_to_one_question_contradict_nothing():
+    """Every other scan calls 40 mm³ made so and not worn, and says so by its range; without the range it is a contradiction."""
+    given = [
+        replace(
+            one,
+            value=one.value - 40.0 * (int(one.repeat) % 2),
+            up=40.0 * (int(one.repeat) % 2),
+            down=40.0 * (1 - int(one.repeat) % 2),
+        )
+        for one in scans(np.random.default_rng(4))
+    ]
+    (study,) = in_accord([gauge_study("wear_volume_mm3", "", given)])
+    (plain,) = in_accord([gauge_study("wear_volume_mm3", "", [replace(one, down=0.0, up=0.0) for one in given])])
+    assert (study.accord, plain.accord) == (Accord.ALIKE, Accord.MORE)
+    assert study.repeatability.ratio == plain.repeatability.ratio > 100.0
+
+
+def test_the_least_that_ranges_leave_is_that_of_a_search():
+    """Of a mean anywhere, by scipy."""
+    low, high, std = np.array([0.0, 3.0, 8.0, 1.0]), np.array([1.0, 3.5, 9.0, 20.0]), np.array([0.5, 1.0, 2.0, 0.1])
+    given = [Repeat("P", "A", str(i), *one) for i, one in enumerate(zip(low, std, 0.0 * low, high - low, strict=True))]
+    found = minimize_scalar(
+        lambda mean: float(np.square((mean - np.clip(mean, low, high)) / std).sum()), bounds=(0.0, 20.0), method="bounded"
+    )
+    assert scatter([given]).p_value == pytest.approx(chi2.sf(found.fun, 3), rel=1e-6)
+
+
+def test_scans_that_found_no_wear_are_no_zeros():
+    given = scans(np.random.default_rng(9))
+    nothing = [
+        replace(one, value=0.0, std=math.nan, found=False) if (one.part, one.repeat) == ("P4", "0") else one for one in given
+    ]
+    study = gauge_study("q", "", nothing)
+    assert study.variance.repeatability.std < 0.2 and study.repeats == 2
+    assert study.left_out == 2 + 4 * 2  # those two, and a repeat of each operator on the other gears
+
+
 def test_the_largest_balanced_study_is_taken():
     given = [
         one
@@ -129,7 +181,25 @@ def test_a_gear_that_wears_is_another_part_at_other_cycles(tmp_path):
 def test_scans_of_one_date_at_other_cycles_are_other_parts(tmp_path):
     day = datetime(2026, 3, 1)
     _, parts = _studied(tmp_path / "s", [(day, 1e6, "A", "1", 1.0), (day, 2e6, "A", "1", 5.0)])
-    assert parts == ["G 2026-03-01 1000000 cycles", "G 2026-03-01 2000000 cycles"]
+    assert parts == ["G 1000000 cycles", "G 2000000 cycles"]
+
+
+def test_a_gear_that_did_not_run_is_the_same_part_on_another_day(tmp_path):
+    """One operator on Monday and one on Tuesday, or each scan with its time of day, were no study."""
+    study, _ = _studied(tmp_path / "s", [
+        (datetime(2026, 3, day, hour), 1e6, who, str(hour), 1.0 + 0.01 * hour) for day, who in ((1, "A"), (2, "B")) for hour in (8, 9)
+    ])  # fmt: skip
+    assert (study.parts, study.operators, study.repeats) == (("G 1000000 cycles",), ("A", "B"), 2)
+
+
+def test_nothing_found_comes_from_the_store_as_such(tmp_path):
+    nothing = report()
+    nothing["wear"]["regions"] = []
+    when = datetime(2026, 3, 1), 1e6, "A"
+    store = store_of(tmp_path / "s", [(row("G", *when, str(i)), given) for i, given in enumerate((report(), report(), nothing))])
+    _, scans = gauge_studies(read_fleet(store))
+    assert sorted(scan.found for scan in scans["wear_volume_mm3", ""]) == [False, True, True]
+    assert all(scan.found for scan in scans["thickness_loss_mm", ""])
 
 
 def test_without_date_and_cycles_repeats_are_told_apart_or_none(tmp_path):
