@@ -69,11 +69,13 @@ def _rates(quantity: str, true: Table, found: Table) -> None:
     """Rates, times to a limit and verdicts; truth is proportional to cycles."""
     per_cycle = {row["gear_id"]: float(row[quantity]) / float(row["cycles_run"]) for row in true}
     last = {row["gear_id"]: float(row[quantity]) for row in true}
-    pulls, relative, held, ahead, verdicts = [], [], [], [], dict[tuple[str, str], int]()
+    pulls, within, relative, held, ahead, verdicts = [], [], [], [], [], dict[tuple[str, str], int]()
     for row in found:
         gear = row["gear_id"]
         if row["rate"] and row["from_new"] != "True":
-            pulls.append((float(row["rate"]) - per_cycle[gear]) / float(row["rate_std"]))
+            within.append(float(row["rate_low"]) <= per_cycle[gear] <= float(row["rate_high"]))
+            if float(row["rate_std"]) > 0.0:
+                pulls.append((float(row["rate"]) - per_cycle[gear]) / float(row["rate_std"]))
             relative.append(float(row["rate"]) / per_cycle[gear] - 1.0)
         if not row["limit"]:
             continue
@@ -89,7 +91,8 @@ def _rates(quantity: str, true: Table, found: Table) -> None:
                 ahead.append(float(row["left"]) / left - 1.0)
     if pulls:
         print(
-            f"  rates {len(pulls)}: median {100 * _median(relative):.1f} % off; error / ±: RMS {_rms(pulls):.2f}, within 2: {_share([abs(p) <= 2 for p in pulls])}"
+            f"  rates {len(pulls)}: median {100 * _median(relative):.1f} % off; error / ±: RMS {_rms(pulls):.2f}, within 2: {_share([abs(p) <= 2 for p in pulls])};"
+            f" in the 95 % interval {_share(within)}"
         )
     if held:
         print(f"  cycles to the limit: in the 95 % interval {_share(held)}; median {100 * _median(ahead):.1f} % off")
