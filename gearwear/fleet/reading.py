@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from gearwear.design.quantity import listed
 from gearwear.fleet.gauge import GaugeStudy, Repeat, gauge_study, in_accord
 from gearwear.fleet.line import beyond
 from gearwear.fleet.manifest import read_moment, shown_time
@@ -76,7 +77,12 @@ def trends(fleet: StoredFleet) -> list[GearTrend]:
     for number in fleet.numbers:
         if number["quantity"] in QUANTITIES:
             numbers.setdefault(number["gear_id"], []).append(number)
-    gears = [_gear(fleet, gear_id, rows, numbers.get(gear_id, [])) for gear_id, rows in _by_gear(fleet.rows).items()]
+    by_gear = _by_gear(fleet.rows)
+    alike: dict[str, list[str]] = {}
+    for gear_id in by_gear:
+        alike.setdefault("".join(gear_id.split()).casefold(), []).append(gear_id)
+    also = {gear_id: [other for other in names if other != gear_id] for names in alike.values() for gear_id in names}
+    gears = [_gear(fleet, gear_id, rows, numbers.get(gear_id, []), also[gear_id]) for gear_id, rows in by_gear.items()]
     return by_urgency(with_significance(gears))
 
 
@@ -87,10 +93,13 @@ def _by_gear(rows: Iterable[Listed]) -> dict[str, list[Listed]]:
     return by_gear
 
 
-def _gear(fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Sequence[dict[str, Any]]) -> GearTrend:
+def _gear(
+    fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Sequence[dict[str, Any]], also: Sequence[str]
+) -> GearTrend:
+    """One gear; `also` are others whose names are the same but for capitals and blanks."""
     inspections = _inspections(rows)
     states = {row.key: fleet.states.get(row.key) for row in rows}
-    notes = []
+    notes = [f"there is {listed([*also])} too: is it the same gear?"] if also else []
     for state, words in ((State.REFUSED, "refused"), (State.FAILED, "failed"), (None, "not compared yet")):
         number = sum(reached is state for reached in states.values())
         if number:

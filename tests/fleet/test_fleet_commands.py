@@ -121,6 +121,13 @@ def test_where_the_last_is_not_known_the_strictest_limit_counts(tmp_path):
     assert run("trend", store.folder).status == 1
 
 
+def test_names_that_differ_by_capitals_or_blanks_alone_are_told_of(tmp_path):
+    store = store_of(tmp_path / "store", [*inspections("G 1", [20]), *inspections("g1", [40]), *inspections("G2", [40])], LIMITS)
+    said = run("trend", store.folder).out
+    assert "! there is g1 too: is it the same gear?" in said and "! there is G 1 too: is it the same gear?" in said
+    assert said.count("there is") == 2
+
+
 def test_scans_without_a_result_are_told_of(tmp_path):
     scans = [*inspections("A", [20]), (row("A", START + timedelta(90), 2e6), State.FAILED), (row("C", START), State.REFUSED)]
     scans.append((row("D", START, 1e6), report(converged=False)))
