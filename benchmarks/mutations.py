@@ -97,6 +97,7 @@ MUTATIONS = [
         ("fleet/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),
         ("fleet/conformity.py", "if most <= limit", "if least <= limit", "fleet/test_conformity.py"),
         ("fleet/quantities.py", "HIDDEN = 2.0", "HIDDEN = 1.0", "fleet/test_quantities.py"),
+        ("fleet/quantities.py", "abs(tip**2 - form**2) / (2.0 * base)", "abs(tip - form)", "fleet/test_quantities.py"),
         ("fleet/line.py", "scatter = math.sqrt(square / degrees) * arm if bends else std", "scatter = std", "fleet/test_line.py"),
         ("fleet/line.py", "0.0 if above >= limit else _crossing", "_crossing", "fleet/test_line.py"),
         ("fleet/line.py", "if not far_slope > 0.0 or not", "if not", "fleet/test_line.py"),

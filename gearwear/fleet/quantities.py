@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from gearwear.design.side import Side
+from gearwear.fleet.line import beyond
 
 Json = Mapping[str, Any]
 
@@ -91,26 +92,26 @@ def _wear(report: Json) -> Iterator[Quantity]:
     wear: Json = report.get("wear") or {}
     regions, size = wear.get("regions") or [], "volume_mm3" if "volume_mm3" in wear else "area_mm2"
     unit = size.rsplit("_", 1)[1]
+    open_ = _even_open(report)
     depth, patch = HIDDEN * 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get("detection_area_mm2"))
     if regions:
         yield from _estimate(f"wear_{size}", GEAR, wear.get(size))
         deepest = max(regions, key=lambda region: _number(region["max_depth_um"]))
-        yield _depth(deepest, GEAR)
+        yield _depth(deepest, GEAR, open_)
     elif size in wear:  # nothing was found: what might be there all the same
-        hidden, open_ = (
-            depth * patch if unit == "mm3" else math.nan,
-            _number(wear[size].get("high")),
-        )  # what else the scan leaves open
-        yield Quantity(name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=float(np.fmax(hidden, open_)))
-        yield Quantity(name="wear_depth_mm", scope=GEAR, value=0.0, low=0.0, high=depth)
+        hidden = depth * patch if unit == "mm3" else math.nan
+        yield Quantity(
+            name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=float(np.fmax(hidden, _number(wear[size].get("high"))))
+        )
+        yield Quantity(name="wear_depth_mm", scope=GEAR, value=0.0, low=0.0, high=max(depth, HIDDEN * open_[1]))
     yield from _estimate("lost_volume_mm3", GEAR, wear.get("lost_volume_mm3"))
     seen = {(region["tooth"], region["flank"]) for region in regions}
     for region in regions:
         yield from _estimate(f"wear_{size}", TOOTH, region.get(size), tooth=int(region["tooth"]), flank=str(region["flank"]))
-        yield _depth(region, TOOTH)
+        yield _depth(region, TOOTH, open_)
     for flank in wear.get("flanks") or []:
         if (flank["tooth"], flank["flank"]) not in seen:
-            high = HIDDEN * 1e-3 * _number(flank.get("detection_limit_um"))
+            high = max(HIDDEN * 1e-3 * _number(flank.get("detection_limit_um")), HIDDEN * open_[1])
             yield Quantity(
                 name="wear_depth_mm",
                 scope=TOOTH,
@@ -122,21 +123,52 @@ def _wear(report: Json) -> Iterator[Quantity]:
             )
 
 
-def _depth(region: Json, scope: str) -> Quantity:
-    """The deepest place of a flank, and as little as it may be where an even loss of its side may be thinner teeth."""
+def _even_open(report: Json) -> tuple[float, float]:
+    """What the range of the worn volume (of a section the area) comes to below and above it, mm along the normal, evenly over all flanks of one
+    side; 0 where it is no wider than the ±.
+
+    The flank of an involute is ``(L_tip² − L_form²) / (2 r_b)`` long, with ``L² = r² − r_b²``, and lies at the helix angle of the base circle.
+    """
+    wear, design = report.get("wear") or {}, report.get("design") or {}
+    planar = "volume_mm3" not in wear
+    total: Json = wear.get("area_mm2" if planar else "volume_mm3") or {}
+    tip, form, base, face, angle, teeth = (
+        _number(design.get(name))
+        for name in ("tip_radius_mm", "form_radius_mm", "base_radius_mm", "face_width_mm", "base_helix_angle_deg", "teeth")
+    )
+    side = teeth * abs(tip**2 - form**2) / (2.0 * base) * (1.0 if planar else face / math.cos(math.radians(angle)))
+    value, std, low, high = (_number(total.get(key)) for key in ("value", "std", "low", "high"))
+    down, up = (far / side if side > 0.0 else 0.0 for far in beyond(value, std, low, high))
+    return down, up
+
+
+def _ends(value: float, down: float, up: float) -> tuple[float, float]:
+    """Limits that far below and above a value; nan where it is no further."""
+    return value - down if down > 0.0 else math.nan, value + up if up > 0.0 else math.nan
+
+
+def _depth(region: Json, scope: str, open_: tuple[float, float]) -> Quantity:
+    """The deepest place of a flank, and what it may be where its side may be made so: up to twice what the range is evenly."""
+    depth = 1e-3 * _number(region["max_depth_um"])
+    low, high = _ends(depth, *(HIDDEN * far for far in open_))
+    less_even = 1e-3 * _number(region.get("max_depth_less_even_um"))
     return Quantity(
         name="wear_depth_mm",
         scope=scope,
-        value=1e-3 * _number(region["max_depth_um"]),
+        value=depth,
         std=1e-3 * _number(region.get("max_depth_std_um")),
         tooth=int(region["tooth"]),
         flank=str(region["flank"]) if scope == TOOTH else "",
-        low=1e-3 * _number(region.get("max_depth_less_even_um")),
+        low=float(np.maximum(np.fmin(low, less_even), 0.0)),
+        high=high,
     )
 
 
 def _thickness(report: Json) -> Iterator[Quantity]:
     teeth = [tooth for tooth in report.get("thickness") or [] if math.isfinite(_number(tooth.get("loss_max_mm")))]
+    design: Json = report.get("design") or {}
+    arc = _number(design.get("reference_radius_mm")) / _number(design.get("base_radius_mm"))  # of a loss along the normal
+    open_ = [arc * far if far > 0.0 else 0.0 for far in _even_open(report)]
     losses = [
         Quantity(
             name="thickness_loss_mm",
@@ -152,7 +184,8 @@ def _thickness(report: Json) -> Iterator[Quantity]:
         most = report.get("most_lost")  # without the bias of looking for the greatest; reports of older versions have none
         if most is not None:
             worst = replace(worst, value=_number(most["value_mm"]), std=_number(most.get("std_mm")), tooth=int(most["tooth"]))
-        yield Quantity(name=worst.name, scope=GEAR, value=worst.value, std=worst.std, tooth=worst.tooth)
+        low, high = _ends(worst.value, *open_)
+        yield replace(worst, scope=GEAR, low=low, high=high)
     least: Json | None = report.get("thinnest")
     if least is not None:
         yield Quantity(
