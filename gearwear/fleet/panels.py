@@ -201,17 +201,17 @@ def _mark(x: float, name: str, point: Point, scales: Scales) -> str:
     if point.value > scales.tops[name]:
         return f'<path class="dot" d="M{x - 2.4:.1f} {TOP + 3.4:.1f}h4.8l-2.4 -4.2z"/>'
     kind = "dot" if point.std > 0.0 else "none"
-    bars = _bars(x, point, lambda value: scales.y(name, value), 1.6)
+    bars = _bars(x, point, lambda value: scales.y(name, value), 1.6, scales.tops[name])
     return f'{bars}<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="1.9"/>'
 
 
-def _bars(x: float, point: Point, y: Callable[[float], float], cap: float) -> str:
-    """2 u on either side of a point, and a whisker with caps where a range goes beyond."""
+def _bars(x: float, point: Point, y: Callable[[float], float], cap: float, top: float) -> str:
+    """2 u on either side of a point, and a whisker where a range goes beyond: with a cap at its end, if that lies within the chart."""
     half = COVERAGE * point.noise if point.noise > 0.0 else 0.0
     bars = f'<path class="u" d="M{x:.1f} {y(point.value - half):.1f}V{y(point.value + half):.1f}"/>' if half else ""
     for far, end, side in zip(point.open, point.ends, (-1.0, 1.0), strict=True):
         if far > 0.0:
-            caps = f"M{x - cap:.1f} {y(end):.1f}h{2.0 * cap:.1f}"
+            caps = f"M{x - cap:.1f} {y(end):.1f}h{2.0 * cap:.1f}" if end <= top else ""
             bars += f'<path class="open" d="M{x:.1f} {y(point.value + side * half):.1f}V{y(end):.1f}{caps}"/>'
     return bars
 
@@ -243,7 +243,7 @@ def overview(gears: Sequence[GearTrend]) -> Markup:
     for i, (rank, gear, point, limit) in enumerate(limited):
         x = 50.0 + (i + 0.5) * step
         radius = min(max(0.4 * step, 1.8), 4.0)
-        bars = _bars(x, point, partial(_share, y, limit), radius)
+        bars = _bars(x, point, partial(_share, y, limit), radius, top * limit)
         marks.append(
             f'<a href="#g{rank}"><title>{_escaped(gear.gear_id)}</title>{bars}'
             f'<circle class="{css(gear.conformity)}" cx="{x:.1f}" cy="{y(point.value / limit):.1f}" r="{radius:.1f}"/>'
