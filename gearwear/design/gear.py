@@ -361,6 +361,16 @@ class Gear:
         modification = self.spec.left if side is Side.LEFT else self.spec.right
         return DrawnFlank(modification, side, self.form_roll, self.tip_roll, self.base_radius, self.face_width)
 
+    def drawn_excess(self, roll: float) -> float:
+        """How much thicker the modifications make the tooth at L = `roll` (mm) and mid-face, both flanks together, mm along the transverse
+        base tangent."""
+        return sum(float(self.drawn(side).offset(roll, 0.5 * self.face_width)) for side in Side)
+
+    @property
+    def drawn_tooth_thickness(self) -> float:
+        """Transverse arc of the tooth at the reference circle as drawn, modifications at mid-face and all, mm."""
+        return self.tooth_thickness + self.drawn_excess(self.reference_roll) / math.cos(self.transverse_pressure_angle)
+
     def half_angles(self, radius: Floats, z: Floats) -> Floats:
         """Half angles of both sides as drawn, modifications and all.
 

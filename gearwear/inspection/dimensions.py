@@ -1,8 +1,8 @@
 """Dimensions a workshop checks a gear by: span, over pins, chordal thickness, constant chord.
 
-The nominal ones are closed forms of the gear as designed, with profile shift and thinning (ISO 21771:2007; formulas of the
-reference geometry, base tangent ``W_k = (k − 1) p_b + s_b``); the measured ones add the flanks' deviations where
-the gauge touches. On helical gears plates and balls touch normal to the flanks in space, so that the transverse
+The nominal ones are closed forms of the gear as drawn: with profile shift and thinning (ISO 21771:2007; formulas of the
+reference geometry, base tangent ``W_k = (k − 1) p_b + s_b``), and with the flanks' modifications where the gauge touches at
+mid-face. The measured ones add the flanks' deviations from that. On helical gears plates and balls touch normal to the flanks in space, so that the transverse
 lengths of the spur formulas are multiplied or divided by cos β_b.
 """
 
@@ -27,6 +27,9 @@ STANDARD_PIN = 1.728
 PLATE_HOLD = 3.0
 """mm of face width that the plates of a span need beyond W sin β_b to stand on helical flanks (Elements of Metric Gear Technology, from memory)."""
 
+TOUCHING_STEPS = 5
+"""In which the place where a pin touches a modified flank is found; with usual reliefs each leaves a fiftieth of what was off."""
+
 LEAST_PLATE_SHARE = 0.05
 """Share of the face width, on either side of where a plate of a span touches helical flanks, that is looked at at least."""
 
@@ -40,7 +43,7 @@ class Span:
     teeth : int
         k.
     length : float
-        W_k, mm.
+        W_k as drawn, mm.
     roll, radius : float
         L and r where the plates touch (evenly on both sides), mm.
     rise : float
@@ -133,7 +136,7 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     -----
     ``W_k = m_n cos α_n (π (k − ½) + z inv α_t) + 2 x m_n sin α_n − E_sn cos α_n`` with thinning E_sn, here as
     ``((k − 1) p_bt + 2 r_b ψ_b) cos β_b``. The plates are square to the flanks, whose normals lean by β_b: they touch at L = W cos β_b / 2
-    and at ± W sin β_b / 2 from mid-face.
+    and at ± W sin β_b / 2 from mid-face; what the flanks are modified by there, times cos β_b, is added.
 
     Examples
     --------
@@ -168,14 +171,20 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
             f"[{gear.spec.name}] span over {teeth} teeth cannot be measured: on helical teeth its plates need a face width of {needs(teeth):.2f} mm, there are {gear.face_width:g} mm; the dimension over balls can"
         )
     length = 2.0 * roll / cosine
-    return Span(teeth, length, roll, math.hypot(gear.base_radius, roll), length * math.sin(gear.base_helix_angle))
+    rise = length * math.sin(gear.base_helix_angle)
+    drawn = sum(float(gear.drawn(side).offset(roll, height)) for side, height in _plate_heights(gear, rise).items())
+    return Span(teeth, length + cosine * drawn, roll, math.hypot(gear.base_radius, roll), rise)
+
+
+def _plate_heights(gear: Gear, rise: float) -> dict[Side, float]:
+    """z at which the plates of a span touch, mm."""
+    return {side: 0.5 * gear.face_width - side * 0.5 * rise for side in Side}
 
 
 def plate_bands(gear: Gear, gauge: Span, face: tuple[float, float]) -> dict[Side, tuple[float, float]]:
     """Heights from and to (mm) round those at which the plates of a span touch, as much of the face as lies evenly about them."""
     bands = {}
-    for side in Side:
-        z = 0.5 * gear.face_width - side * 0.5 * gauge.rise
+    for side, z in _plate_heights(gear, gauge.rise).items():
         reach = max(min(z - face[0], face[1] - z), LEAST_PLATE_SHARE * gear.face_width)
         bands[side] = (z - reach, z + reach)
     return bands
@@ -201,6 +210,7 @@ def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
     -----
     ``inv α_M = D / (2 r_b cos β_b) + ψ_b − π / z``; ``M = 2 r_b / cos α_M + D``, for odd z the first term times cos(90° / z). A ball
     touches at ``L = r_b tan α_M − (D / 2) cos β_b``. Of a ring the measure is that **between** them: inv α_M and D change sign in all three.
+    Modified flanks make ψ_b greater by ``δ₀ / (2 r_b)`` of both.
 
     Examples
     --------
@@ -224,17 +234,17 @@ def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
         raise InputError(
             f"[{gear.spec.name}] a pin of {pins.diameter:.4f} mm {fault}; {right:.4f} mm would touch at the reference circle"
         )
-    return pins
+    return _on_drawn(gear, pins)
 
 
 def pins_touching(gear: Gear, roll: float) -> Pins | None:
     """Pins that touch the involute at L = `roll` mm; None where such a pin does not stand out of the teeth."""
     pins = _pins(gear, _pin_at(gear, roll))
-    return None if pins is None or _pin_fault(gear, pins) else pins
+    return None if pins is None or _pin_fault(gear, pins) else _on_drawn(gear, pins)
 
 
 def chordal(gear: Gear) -> Chord:
-    """Chordal thickness and height at the reference circle: ``2 r sin(s / 2r)`` and ``r_a − r cos(s / 2r)``.
+    """Chordal thickness and height at the reference circle: ``2 r sin(s / 2r)`` and ``r_a − r cos(s / 2r)``, s as drawn.
 
     Of helical teeth in the normal section, with the normal arc and ``r_v = r / cos² β`` of the virtual gear of z / cos³ β teeth (SDP/SI,
     Elements of Metric Gear Technology, table 10-3).
@@ -245,9 +255,14 @@ def chordal(gear: Gear) -> Chord:
     (9.946096, 6.675951)
     """
     r = _normal_radius(gear)
-    half = gear.normal_tooth_thickness / (2.0 * r)
+    half = _normal_thickness(gear) / (2.0 * r)
     height = gear.tip_radius + (r - gear.reference_radius) - r * math.cos(half)
     return Chord(2.0 * r * math.sin(half), gear.orientation * height)
+
+
+def _normal_thickness(gear: Gear) -> float:
+    """Normal arc of the tooth as drawn at the reference circle, mm."""
+    return gear.drawn_tooth_thickness * math.cos(gear.spec.helix_angle)
 
 
 def _normal_radius(gear: Gear) -> float:
@@ -267,17 +282,19 @@ def constant_chord(gear: Gear) -> Chord:
     if gear.spec.internal:
         return Chord(math.nan, math.nan)  # no rack touches a ring
     alpha = gear.normal_pressure_angle
-    chord = gear.normal_tooth_thickness * math.cos(alpha) ** 2
+    chord = _normal_thickness(gear) * math.cos(alpha) ** 2
     return Chord(chord, gear.tip_radius - gear.reference_radius - 0.5 * chord * math.tan(alpha))
 
 
-def measured_span(positions: Estimate, gauge: Span) -> Estimate:
+def measured_span(positions: Estimate, gear: Gear, gauge: Span) -> Estimate:
     """Span over k teeth at every place round the gear, (teeth,) mm; entry i starts on tooth i and goes counter-clockwise.
 
     Parameters
     ----------
     positions : Estimate
-        (teeth, 2) deviations δ along the transverse base tangent, at the gauge's contact roll length and heights, mm.
+        (teeth, 2) deviations δ from the flanks as drawn, along the transverse base tangent, at the gauge's contact roll length and heights, mm.
+    gear : Gear
+        The nominal gear.
     gauge : Span
         Nominal span.
 
@@ -286,7 +303,7 @@ def measured_span(positions: Estimate, gauge: Span) -> Estimate:
     ``W = W_k + (δ_right(i) + δ_left(i + k − 1)) cos β_b``: the plates touch along the normal. How the scan was
     registered does not change what lies between flanks of the same gear: only the flanks' own errors count, here and over pins.
     """
-    cosine = 2.0 * gauge.roll / gauge.length
+    cosine = gear.base_helix_cosine
     right, left = positions.value[:, Side.RIGHT.index], np.roll(positions.value[:, Side.LEFT.index], 1 - gauge.teeth)
     return Estimate.plain(
         gauge.length + cosine * right + cosine * left,
@@ -315,7 +332,7 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     Parameters
     ----------
     positions : Estimate
-        (teeth, 2) deviations δ along the transverse base tangent at the pins' contact roll length, mm.
+        (teeth, 2) deviations δ from the flanks as drawn, along the transverse base tangent at the pins' contact roll length, mm.
     gear : Gear
         The nominal gear.
     pins : Pins
@@ -385,11 +402,26 @@ def _pins(gear: Gear, diameter: float) -> Pins | None:
     involute = orientation * (diameter / (2.0 * rb * gear.base_helix_cosine) + gear.base_half_angle - math.pi / z)
     if not (diameter > 0.0 and involute >= 0.0):
         return None
-    angle = inverse_involute(involute)
+    return _pins_at(gear, diameter, inverse_involute(involute), 0.0)
+
+
+def _pins_at(gear: Gear, diameter: float, angle: float, excess: float) -> Pins:
+    """The numbers of a pin whose centre is at α_M = `angle`, between flanks that stand out by `excess` (mm) where it touches."""
+    rb, orientation = gear.base_radius, gear.orientation
     centre = rb / math.cos(angle)
-    odd = math.cos(0.5 * math.pi / z) if z % 2 else 1.0
-    roll = rb * math.tan(angle) - orientation * 0.5 * diameter * gear.base_helix_cosine
+    odd = math.cos(0.5 * math.pi / gear.teeth) if gear.teeth % 2 else 1.0
+    roll = rb * math.tan(angle) - orientation * (0.5 * diameter * gear.base_helix_cosine + excess)
     return Pins(diameter, 2.0 * centre * odd + orientation * diameter, angle, centre, roll, math.hypot(rb, roll))
+
+
+def _on_drawn(gear: Gear, pins: Pins) -> Pins:
+    """Pins as they lie between modified flanks: where they touch depends on what the flanks are modified by there, to a step or two."""
+    touching = pins
+    for _ in range(TOUCHING_STEPS if gear.modified else 0):
+        excess, orientation = gear.drawn_excess(touching.roll), gear.orientation
+        involute = involute_function(pins.centre_angle) + orientation * excess / (2.0 * gear.base_radius)
+        touching = _pins_at(gear, pins.diameter, inverse_involute(max(0.0, involute)), 0.5 * excess)
+    return touching
 
 
 def _pin_fault(gear: Gear, pins: Pins) -> str:

@@ -264,7 +264,7 @@ def _dimensions(
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None
     if gauge is not None:
-        span_lengths = measured_span(positions.at_plates(gauge), gauge)
+        span_lengths = measured_span(positions.at_plates(gauge), gear, gauge)
     if pins is not None:
         at_pins, _ = positions.at(profile_place(gear, pins.roll))
         pin_lengths, balls = measured_over_pins(at_pins, gear, pins), runout(at_pins, gear, pins)

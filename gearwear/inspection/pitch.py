@@ -299,11 +299,11 @@ def runout(positions: Estimate, gear: Gear, pins: Pins) -> Runout:
 def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:
     """Tooth thickness of every tooth, (teeth,) mm of arc at the reference circle, from deviations at that circle.
 
-    ``s = s_nominal + (δ_left + δ_right) / cos α_t``, exact for flanks that are offset as a whole.
+    ``s = s_drawn + (δ_left + δ_right) / cos α_t``, exact for flanks that are offset as a whole; s_drawn holds the modifications at mid-face.
     """
     cos = math.cos(gear.transverse_pressure_angle)
     return Estimate.plain(
-        gear.tooth_thickness + positions.value.sum(axis=1) / cos,
+        gear.drawn_tooth_thickness + positions.value.sum(axis=1) / cos,
         np.hypot(positions.own[:, Side.LEFT.index], positions.own[:, Side.RIGHT.index]) / cos,
         None if positions.shared is None else positions.shared.sum(axis=1) / cos,
     )

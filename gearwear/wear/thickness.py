@@ -49,7 +49,7 @@ class SectionThickness(Card):
     z : (n_z,) float
         Heights of the sections, mm.
     nominal : float
-        Nominal arc, mm.
+        Arc as drawn at mid-face, mm.
     arc : (teeth, n_z) float
         Measured arc, mm; nan where a side was not seen.
     flank : (teeth, 2, n_z) float
@@ -158,7 +158,8 @@ class SectionThickness(Card):
         return replace(self, arc=np.where(taken, np.nan, self.arc)) if gone.any() else self
 
     def _least(self, arc: Floats, drawn: Floats | None = None, made: Floats | None = None) -> tuple[Least, Floats, Floats]:
-        """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved.
+        """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved; its
+        height on each tooth, and what is `drawn` there, (teeth,) mm.
 
         How arcs vary as `drawn` and `made`, (teeth, n_z) mm, is known, and no matter of chance: the least of that counts between the places, too.
         """
@@ -173,7 +174,7 @@ class SectionThickness(Card):
         place = place[:, (place >= 0).any(axis=0)]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
         drawn, made = (np.zeros_like(arc) if one is None else one for one in (drawn, made))
-        mean_drawn, mean_made, thinnest = _about_places(place, widths, drawn, made)
+        mean_drawn, mean_made, thinnest, drawn_there = _about_places(place, widths, drawn, made)
         lost, section_std = np.where(place >= 0, arc[index] - drawn[index] - mean_made, np.nan), self.std[index]
         curves = lost + thinnest
         known = np.zeros(teeth, dtype=np.bool_)
@@ -186,6 +187,7 @@ class SectionThickness(Card):
                 np.take_along_axis(values, index[1][of], axis=1) for values in (self.hollows.depth, self.hollows.std**2 + lying)
             )
             curves[of] = (lost + mean_drawn + mean_made)[of] - depth
+            drawn_there[of] = mean_drawn[of]
             section_std[of] = np.sqrt(section_std[of] ** 2 + depth_variance)
         least = least_of_curves(curves, section_std, self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
@@ -207,7 +209,7 @@ class SectionThickness(Card):
         return (
             replace(least, value=least.value - deeper, std=std, overall=value, overall_std=overall),
             self.z[place[rows, least.at]],
-            hidden,
+            drawn_there[rows, least.at],
         )
 
     @cached_property
@@ -303,14 +305,15 @@ class SectionThickness(Card):
     def _thinnest(self) -> ThinnestTooth | None:
         if not np.isfinite(self.arc).any():
             return None
-        least, at_z, _ = self._least_arc
+        least, at_z, drawn = self._least_arc
         value, std = least.overall, least.overall_std
         low, high = value - NORMAL_95 * std + self.otherwise[0], value + NORMAL_95 * std + self.otherwise[1]
         if self.pooled > 1:
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
             low = min(low, float(self.arc[at] - self.std[at]))
-        return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]))
+        nominal = self.nominal if self.drawn is None else float(drawn[least.curve])
+        return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]), nominal)
 
 
 def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
@@ -354,9 +357,10 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     for rows in stretches:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
-    nominal = float(gear.thickness(r))
+    generated = float(gear.thickness(r))
+    nominal = generated + r / gear.base_radius * gear.drawn_excess(float(gear.roll_length(r)))
     turn = r / gear.normal_lever
-    made = np.full((gear.teeth, len(heights)), nominal)
+    made = np.full((gear.teeth, len(heights)), generated)
     if gear.modified:
         made = made + r * (gear.half_angles(np.array([r]), heights).sum(axis=0)[:, 0] - 2.0 * float(gear.half_angle(r)))
     arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
@@ -472,10 +476,10 @@ def _on_each(count: Floats, pooled: int, stretches: Sequence[slice]) -> Ints:
     return np.where(thin, np.clip(wanted, pooled, max(most, pooled)), pooled).astype(np.int64) | 1
 
 
-def _about_places(place: Ints, widths: Ints, drawn: Floats, made: Floats) -> tuple[Floats, Floats, Floats]:
-    """Means over the pooled sections of `drawn` and `made`, (teeth, n_z), and the least of their sum from half way to the place before to half way to
-    the next, or to the end of the face, (teeth, places) each; nan where there is no place."""
-    result = np.full((3, *place.shape), np.nan)
+def _about_places(place: Ints, widths: Ints, drawn: Floats, made: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Means over the pooled sections of `drawn` and `made`, (teeth, n_z), the least of their sum from half way to the place before to half way to
+    the next, or to the end of the face, and `drawn` where that is, (teeth, places) each; nan where there is no place."""
+    result = np.full((4, *place.shape), np.nan)
     n, both = drawn.shape[1], drawn + made
     for tooth, width in enumerate(widths.tolist()):
         columns = np.flatnonzero(place[tooth] >= 0)
@@ -485,8 +489,10 @@ def _about_places(place: Ints, widths: Ints, drawn: Floats, made: Floats) -> tup
         edges = np.concatenate([[0], (at[1:] + at[:-1] + 1) // 2, [n]])
         for column, low, high in zip(columns, edges[:-1], edges[1:], strict=True):
             # Where two places are the same distance away, the section belongs to both.
-            result[2, tooth, column] = np.nanmin(both[tooth, max(low - 1, 0) : high], initial=np.inf)
-    return result[0], result[1], result[2]
+            near = slice(max(low - 1, 0), high)
+            at_least = int(np.argmin(np.nan_to_num(both[tooth, near], nan=np.inf)))
+            result[2:, tooth, column] = both[tooth, near][at_least], drawn[tooth, near][at_least]
+    return result[0], result[1], result[2], result[3]
 
 
 def _running_sum(values: Floats, width: int) -> Floats:

@@ -55,6 +55,8 @@ class ThinnestTooth:
         95 % interval, mm.
     at_z : float
         Height on that tooth, mm.
+    nominal : float
+        Arc as drawn there, mm.
     """
 
     tooth: int
@@ -63,6 +65,7 @@ class ThinnestTooth:
     low: float
     high: float
     at_z: float
+    nominal: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,17 +1,21 @@
 """Span, pins, chords: printed numbers, published cases, and gears really cut thinner."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from gearwear.design.gear import Gear
+from gearwear.design.modification import FlankModification
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import locate
 from gearwear.errors import InputError
-from gearwear.inspection import inspect
+from gearwear.inspection import Settings, inspect
 from gearwear.inspection.dimensions import chordal, constant_chord, measured_over_pins, measured_span, over_pins, span
 from gearwear.inspection.estimate import Estimate
 from tests.inspection.synthetic import displaced, flanks
@@ -124,7 +128,7 @@ def test_one_worn_flank_in_the_span(pinion):
     """0.1 mm of arc lost on one flank inside the span takes 0.09397 off it, and only off the two spans it is in."""
     delta = np.zeros((12, 2))
     delta[4, 0] = -0.1 * math.cos(pinion.transverse_pressure_angle)  # left flank of tooth 4
-    change = measured_span(Estimate.plain(delta, np.zeros_like(delta)), span(pinion)).value - span(pinion).length
+    change = measured_span(Estimate.plain(delta, np.zeros_like(delta)), pinion, span(pinion)).value - span(pinion).length
     assert round(change[3], 5) == -0.09397  # over teeth 3 and 4: right flank of 3, left flank of 4
     np.testing.assert_array_equal(np.delete(change, 3), 0.0)
 
@@ -162,3 +166,58 @@ def test_thickness_of_a_tooth_worn_on_one_side(pinion):
     expected = np.zeros(12)
     expected[7] = 0.25 / math.cos(pinion.transverse_pressure_angle)
     np.testing.assert_allclose(loss, expected, atol=1e-9)
+
+
+def drawn(**modification):
+    both = FlankModification(**modification)
+    return Gear.from_spec(GearSpec("gear", 30, 3.0, 20.0, left=both, right=both))
+
+
+@pytest.mark.parametrize(
+    "modification", [{"profile_slope": 0.04}, {"profile_crowning": 0.04}, {"tip_relief": 0.03, "tip_relief_length": 9.0}, {"helix_crowning": 0.04}]
+)  # fmt: skip
+def test_gauges_read_modified_flanks_as_they_are(modification):
+    """A gear made as drawn, and gauges laid on its outline by their definitions: a plate is a tangent, a pin touches a circle."""
+    gear = drawn(**modification)
+    rb, tau = gear.base_radius, gear.pitch_angle
+    roll = np.linspace(gear.form_roll, gear.tip_roll, 200001)
+    outset = gear.drawn(Side.LEFT).offset(roll, 0.5 * gear.face_width)
+    radius, half = np.hypot(rb, roll), gear.base_half_angle - (roll / rb - np.arctan(roll / rb)) + outset / rb
+    found = inspect(flanks(gear, 60, 12), gear, Settings(laboratory=False)).dimensions
+    arc = 2.0 * gear.reference_radius * np.interp(gear.reference_roll, roll, half)
+    assert found.thickness.value == pytest.approx(arc, abs=5e-5)
+    assert gear.drawn_tooth_thickness == pytest.approx(arc, abs=1e-9)
+
+    def lean(at):
+        """Of a flank from the involute, near L = `at`, rad."""
+        return np.abs(np.gradient(outset, roll))[np.abs(roll - at) < 1.0].max() * rb / at
+
+    # Gauges roll on where a flank leans; the square of that is not in the program's: ½ lean² over the curvatures' sum, on each flank.
+    rocked = lean(found.span.roll) ** 2 * found.span.roll
+    plates = 2.0 * (radius * np.sin(0.5 * (found.span.teeth - 1) * tau + half)).max()
+    assert found.span_lengths.value == pytest.approx(plates - rocked, abs=rocked + 5e-5)
+    assert found.span.length == pytest.approx(found.span_lengths.value[0], abs=5e-5)
+
+    def room(centre):
+        return np.hypot(
+            radius * np.cos(half) - centre * np.cos(0.5 * tau), radius * np.sin(half) - centre * np.sin(0.5 * tau)
+        ).min()
+
+    centre = brentq(lambda at: room(at) - 0.5 * found.pins.diameter, gear.reference_radius, gear.tip_radius + 5.0, xtol=1e-12)
+    over = 2.0 * centre + found.pins.diameter
+    pins = found.pins
+    rolled = lean(pins.roll) ** 2 / (1.0 / pins.roll + 2.0 / pins.diameter) / math.sin(pins.centre_angle)
+    assert found.pin_lengths.value == pytest.approx(over - rolled, abs=rolled + 5e-5)
+    assert pins.length == pytest.approx(found.pin_lengths.value[0], abs=5e-5)
+
+
+def test_plates_touch_crowned_helices_off_mid_face():
+    spec = GearSpec("gear", 30, 3.0, 40.0, helix_angle=math.radians(15.0))
+    crowned = FlankModification(helix_crowning=0.05)
+    plain, gear = Gear.from_spec(spec), Gear.from_spec(replace(spec, left=crowned, right=crowned))
+    gauge = span(gear)
+    falls = 0.05 * (gauge.rise / 40.0) ** 2
+    assert gauge.length == pytest.approx(span(plain).length - 2.0 * falls * gear.base_helix_cosine, abs=1e-9)
+    measured = inspect(flanks(gear, 60, 24), gear, Settings(laboratory=False)).dimensions
+    assert measured.span_lengths.value == pytest.approx(gauge.length, abs=1e-4)
+    assert measured.thickness.value == pytest.approx(plain.tooth_thickness, abs=1e-4)

@@ -269,3 +269,17 @@ def test_the_greatest_loss_is_that_of_the_worn_tooth():
     found = of_arcs(arc, made, 0.002)
     most = found.most_lost()
     assert most.tooth == 7 and most.value == pytest.approx(0.05, abs=0.004) and 2.0 < most.at_z < 4.0
+
+
+def test_the_nominal_is_as_drawn():
+    """A slope of 40 µm along the profile makes an unworn tooth as thick as is nominal at mid-face."""
+    sloped = FlankModification(profile_slope=0.04, helix_crowning=0.02)
+    gear = Gear.from_spec(replace(GEAR.spec, left=sloped, right=sloped))
+    grid = np.meshgrid(np.arange(12), [1, -1], np.linspace(gear.form_roll, gear.tip_roll, 60), np.linspace(0.0, 15.0, 41))
+    tooth, side, roll, z = (values.ravel() for values in grid)
+    points = flank_points(gear, tooth.astype(int), side.astype(int), roll, z)
+    found = section_thickness(points, gear, 0.0)
+    middle = np.argmin(np.abs(found.z - 7.5))
+    np.testing.assert_allclose(found.arc[:, middle], found.nominal, rtol=0.0, atol=1e-5)
+    u = 2.0 * (gear.reference_roll - gear.form_roll) / (gear.tip_roll - gear.form_roll) - 1.0
+    assert found.nominal == pytest.approx(nominal_arc(R) + 0.04 * u * R / RB, abs=1e-9)

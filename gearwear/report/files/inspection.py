@@ -344,7 +344,7 @@ def _class(finding: Finding) -> str:
 def dimension_lines(inspection: Inspection) -> list[str]:
     """Tooth thickness, span and over pins: what was found and the design's, a line each."""
     dimensions, gear = inspection.dimensions, inspection.gear
-    rows = [("tooth thickness", dimensions.thickness, gear.tooth_thickness)]
+    rows = [("tooth thickness", dimensions.thickness, gear.drawn_tooth_thickness)]
     if dimensions.span is not None:
         rows.append((f"span over {dimensions.span.teeth} teeth", dimensions.span_lengths, dimensions.span.length))
     if dimensions.pins is not None:

@@ -183,8 +183,8 @@ def _dimensions(inspection: Inspection) -> Json:
     dimensions, gear = inspection.dimensions, inspection.gear
     record: Json = {
         "tooth_thickness": {
-            "nominal_mm": rounded(gear.tooth_thickness, 1, 6),
-            "nominal_normal_mm": rounded(gear.normal_tooth_thickness, 1, 6),
+            "nominal_mm": rounded(gear.drawn_tooth_thickness, 1, 6),
+            "nominal_normal_mm": rounded(gear.drawn_tooth_thickness * math.cos(gear.helix_angle), 1, 6),
             "teeth": [{"tooth": i + 1, "thickness_mm": estimate(dimensions.thickness.at(i), 1, 5)} for i in range(gear.teeth)],
         },
         "chordal": _chord(dimensions.chord, dimensions.chord_thickness),

@@ -109,12 +109,11 @@ def _wear_found(results: Results) -> str:
         )
     text += f", up to {depth} deep" if len(wear.regions) == 1 else f"; deepest, by {depth}, on {place}"
     tooth = wear.thinnest
-    nominal = results.gear.tooth_thickness
-    loss = 0.0 if tooth is None else nominal - tooth.value
-    if tooth is not None and tooth.high < nominal:  # else it may as well be as designed
+    if tooth is not None and tooth.high < tooth.nominal:  # else it may as well be as designed
+        loss = tooth.nominal - tooth.value
         which = "that tooth" if tooth.tooth == worst.tooth else f"tooth {tooth.tooth + 1}"
         text += (
-            f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / nominal, 2)}{SPACE}%)"
+            f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / tooth.nominal, 2)}{SPACE}%)"
             " thinner than designed at the reference circle"
         )
     if _open(results):
@@ -393,7 +392,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
     if tooth is not None:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
         across = "" if results.gear.twist == 0.0 else ", transverse arc"
-        note = f"tooth {tooth.tooth + 1}{where}; design {number(results.gear.tooth_thickness, 3)}{SPACE}mm, at the reference circle{across}"
+        note = f"tooth {tooth.tooth + 1}{where}; design {number(tooth.nominal, 3)}{SPACE}mm, at the reference circle{across}"
         key.append(KeyFigure("Thinnest tooth", thinnest_words(tooth), note))
     if results.pair is not None:
         key += _contact_figures(results)
