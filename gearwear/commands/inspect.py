@@ -108,11 +108,11 @@ def _add_range_arguments(p: Parser) -> None:
     length("--slope-length-mm", "roll length that f_Hα is stated over; left out: the evaluation range")
     length(
         "--profile-z-mm",
-        "z in the design's frame of the section in which profiles are taken; left out: mean over the helix evaluation range",
+        "z in the design's frame, of a half in its own, of the section in which profiles are taken; left out: mean over the helix evaluation range",
     )
     length("--profile-half-width-mm", "half the width of that section, default 5 %% of the face width")
     length("--profile-cutoff-mm", "cut-off wavelength of the profile's filter")
-    interval("--helix-z-mm", "helix evaluation range, z to z in the design's frame")
+    interval("--helix-z-mm", "helix evaluation range, z to z in the design's frame, of a half in its own")
     length("--helix-diameter-mm", "diameter at which helices are taken; left out: mean over the profile evaluation range")
     length(
         "--helix-half-width-mm",
@@ -329,11 +329,9 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition) -> Settings:
             )
         start = math.sqrt((0.5 * arguments.control_diameter) ** 2 - gear.base_radius**2)
     bands = None
-    if arguments.k_band == "class":
-        if arguments.required is None:
-            raise InputError("--k-band class needs the class, as --class N")
-        bands = class_k_bands(gear, arguments.required, edition, start)
-    elif arguments.k_band is not None:
+    if arguments.k_band == "class" and arguments.required is None:
+        raise InputError("--k-band class needs the class, as --class N")
+    if arguments.k_band not in (None, "class"):
         bands = read_k_bands(arguments.k_band, gear)
     chosen = _ranges(arguments, gear)
     if start is not None and chosen.control_roll is not None:
@@ -350,7 +348,10 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition) -> Settings:
         axis=arguments.axis,
     )
     check_settings(settings, gear)
-    return settings
+    if arguments.k_band != "class":
+        return settings
+    where = (settings.control_roll, settings.profile_end, settings.helix_between)
+    return replace(settings, k_bands=class_k_bands(gear, arguments.required, edition, *where))
 
 
 def _teeth(text: str, count: int) -> list[int] | None:

@@ -53,7 +53,7 @@ def with_scale(covariance: Floats | None, scale_std: float) -> Floats | None:
         return covariance
     joined = np.zeros((MOTIONS + 1, MOTIONS + 1))
     if covariance is not None:
-        joined[:MOTIONS, :MOTIONS] = covariance
+        joined[:MOTIONS, :MOTIONS] = covariance[:MOTIONS, :MOTIONS]  # settings of an inspection have the scale in them
     joined[MOTIONS, MOTIONS] = scale_std**2
     return joined
 

@@ -45,8 +45,9 @@ def half_points(points: SurfacePoints, gear: Gear, half: Half) -> SurfacePoints:
 
 
 def half_covariance(covariance: Floats, gear: Gear, half: Half) -> Floats:
-    """Covariance (6, 6) of a motion (tx, ty, tz in mm; wx, wy, wz in rad) about the origin of `half_gear`'s frame: t' = t + w × (0, 0, low)."""
-    moved, low = np.eye(6), _segment(gear, half).low
+    """Covariance (6, 6) of a motion (tx, ty, tz in mm; wx, wy, wz in rad) about the origin of `half_gear`'s frame: t' = t + w × (0, 0, low).
+    A seventh cause, the scale, stays."""
+    moved, low = np.eye(len(covariance)), _segment(gear, half).low
     moved[0, 4], moved[1, 3] = low, -low
     return np.asarray(moved @ covariance @ moved.T)
 

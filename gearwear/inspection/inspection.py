@@ -11,7 +11,7 @@ from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
-from gearwear.inspection.budget import BudgetLine, budget_line, scaled_dimensions, with_scale
+from gearwear.inspection.budget import MOTIONS, BudgetLine, budget_line, scaled_dimensions, with_scale
 from gearwear.inspection.dimensions import (
     Dimensions,
     Pins,
@@ -191,8 +191,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     given = replace(
         given, axis=given.axis or "teeth", scale_std=scale_std, pose_covariance=with_scale(given.pose_covariance, scale_std)
     )
-    if given.noise is not None:
-        given = replace(given, noise=given.noise / gear.base_helix_cosine)
+    asked = given.noise
+    if asked is not None:
+        given = replace(given, noise=asked / gear.base_helix_cosine)
     notes: list[str] = []
     graded = _is_graded(gear, given, notes)
     gauge, pins = _gauges(gear, given, notes)
@@ -228,7 +229,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     notes += [*felt_by, *(limit.text for limit in limits)]
     notes += _notes_on_uncertainty(scan)
     return Inspection(
-        gear=gear, settings=scan.settings, noise=scan.samples.noise, points=len(scan.samples), stray=scan.samples.stray,
+        gear=gear, settings=replace(scan.settings, noise=asked), noise=scan.samples.noise, points=len(scan.samples), stray=scan.samples.stray,
         coverage=scan.coverage, profile=profile, helix=helix, pitch=pitch, runout=balls,
         dimensions=scaled_dimensions(dimensions, scale_std), topography=topography(scan.samples, 16, 24),
         laboratory=laboratory, findings=worst_findings(judge, profile, helix, pitch, balls), notes=(*notes, FOOTNOTE),
@@ -291,7 +292,7 @@ def _carried_notes(flanks: int, circle: str, result: str) -> list[str]:
 
 def _notes_on_uncertainty(scan: PreparedScan) -> list[str]:
     """What pitch and runout are about, and what U holds."""
-    axis, factor = scan.settings.axis, scan.sample_factor
+    axis, factor, pose = scan.settings.axis, scan.sample_factor, scan.settings.pose_covariance
     notes = [
         f"Pitch, index and runout are about the axis of the {'outside' if axis == 'bore' and scan.gear.spec.internal else DATUM_WORDS[axis]}."
         if axis in DATUM_WORDS
@@ -305,7 +306,7 @@ def _notes_on_uncertainty(scan: PreparedScan) -> list[str]:
         )
     known = (
         ", and the registration. "
-        if scan.settings.pose_covariance is not None
+        if pose is not None and pose[:MOTIONS, :MOTIONS].any()
         else "; the uncertainty of the registration is not in them. "
     )
     notes.append(

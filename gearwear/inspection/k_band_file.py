@@ -63,13 +63,30 @@ def read_k_bands(path: str | Path, gear: Gear) -> KBands:
     return KBands(bands["profile"], bands["helix"], readable(path))
 
 
-def class_k_bands(gear: Gear, iso_class: int, edition: Edition = Edition.ISO_2013, start: float | None = None) -> KBands:
-    """Straight bands as wide as the total tolerances F_α and F_β of a class over the evaluation ranges; `start` is L of the profile
-    control circle, mm, or None."""
+def class_k_bands(
+    gear: Gear,
+    iso_class: int,
+    edition: Edition = Edition.ISO_2013,
+    start: float | None = None,
+    end: float | None = None,
+    between: tuple[float, float] | None = None,
+) -> KBands:
+    """Straight bands as wide as the total tolerances F_α and F_β of a class over the evaluation ranges.
+
+    Parameters
+    ----------
+    gear : Gear
+    iso_class : int
+    edition : Edition
+    start, end : float or None
+        L of the profile control circle and of the evaluation's end, mm, as `Settings.control_roll` and `Settings.profile_end`.
+    between : (float, float) or None
+        z to z of the helix evaluation, mm, as `Settings.helix_between`.
+    """
     limits = tolerances(Size.of(gear), iso_class, edition)
-    first = None if start is None else profile_place(gear, start)
-    profile = KBand.straight(profile_range(gear, edition, first), limits.profile_total)
-    helix = KBand.straight(helix_range(gear), limits.helix_total)
+    first, last = (None if roll is None else profile_place(gear, roll) for roll in (start, end))
+    profile = KBand.straight(profile_range(gear, edition, first, last), limits.profile_total)
+    helix = KBand.straight(helix_range(gear, between), limits.helix_total)
     return KBands((profile, profile), (helix, helix), f"Fα and Fβ of {edition}, class {iso_class}")
 
 

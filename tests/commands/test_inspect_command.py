@@ -167,6 +167,17 @@ def test_a_k_band_and_gauges_of_ones_own(tmp_path):
         assert {row["profile_k_verdict"] for row in csv.DictReader(file)} == {"outside"}
 
 
+@pytest.mark.usefixtures("undrawn")
+def test_bands_of_a_class_are_over_the_ranges_that_were_asked_for(tmp_path):
+    files, _ = scan_file(tmp_path, "made", MADE.of_size(30_000), 8)
+    ranges = ["--profile-roll-mm", "8,20", "--helix-z-mm", "5,12"]
+    said = run("inspect", PAIR, *files, "--no-loop", "--class", 7, "--k-band", "class", *ranges, "--out", tmp_path / "out")
+    assert (said.status, said.err) == (0, "")
+    record = strict_json(tmp_path / "out" / "inspection.json")["inspection"]
+    assert record["profile"]["range_roll_mm"] == record["profile"]["k_bands"]["left"]["roll_mm"] == [8.0, 20.0]
+    assert record["helix"]["range_z_mm"] == record["helix"]["k_bands"]["right"]["z_mm"] == [5.0, 12.0]
+
+
 @pytest.fixture(scope="module")
 def thin(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     return scan_file(tmp_path_factory.mktemp("thin"), "made", MADE.of_size(8_000), 8)[0]

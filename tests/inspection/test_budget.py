@@ -102,3 +102,11 @@ def test_instrument_and_temperature_add_in_squares():
         "datum": {"temperature_C": 23.0, "temperature_std_K": 2.0, "expansion_ppm_K": 20.0},
     })  # fmt: skip
     assert design.scale_std == pytest.approx(50e-6)
+
+
+@pytest.mark.parametrize("scale", [None, S])
+@pytest.mark.parametrize("pose", [None, np.diag([1e-6, 1e-6, 1e-6, 1e-10, 1e-10, 1e-10])], ids=["pose known", "pose unsure"])
+def test_the_notes_say_the_registration_is_in_u_where_the_budget_has_it(scale, pose):
+    found = inspect(flanks(GEAR, 60, 12), GEAR, Settings(noise=0.004, pose_covariance=pose, scale_std=scale))
+    said = any("and the registration." in note for note in found.notes)
+    assert said == (_line(found, "index").registration > 0.0) == (pose is not None)

@@ -11,7 +11,7 @@ import pytest
 from gearwear.design import Gear, GearSpec
 from gearwear.design.surface import flank_points
 from gearwear.errors import InputError
-from gearwear.inspection.halves import Half, half_covariance, half_gear, half_points
+from gearwear.inspection.halves import Half, half_covariance, half_gear, half_points, inspect_half
 from gearwear.inspection.inspection import inspect
 from gearwear.inspection.settings import Settings
 from gearwear.placing.pose import motion_columns
@@ -63,3 +63,11 @@ def test_the_whole_is_refused_and_so_are_halves_of_one_helix():
         inspect(flanks(), GEAR)
     with pytest.raises(InputError, match="no halves"):
         half_gear(half_gear(GEAR, Half.LOWER), Half.UPPER)
+
+
+def test_settings_of_an_inspection_inspect_again():
+    """They hold the scale as a seventh cause beside the pose."""
+    pose = np.diag([1e-6, 1e-6, 1e-6, 1e-10, 1e-10, 1e-10])
+    first = inspect_half(flanks(), GEAR, Half.LOWER, Settings(noise=0.001, pose_covariance=pose, scale_std=1e-4))
+    again = inspect_half(flanks(), GEAR, Half.LOWER, first.settings)
+    assert again.profile.slope.expanded == pytest.approx(first.profile.slope.expanded, rel=1e-12)

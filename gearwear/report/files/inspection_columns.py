@@ -19,7 +19,7 @@ Columns = dict[str, NDArray[Any]]
 
 
 def finding_columns(inspection: Inspection) -> Columns:
-    """The worst of every deviation, a row each, and those of rolling with a master; see `Inspection.finding_columns`."""
+    """The worst of every deviation, a row each, and those of rolling with a master."""
     findings = (*inspection.findings, *inspection.radial)
     standards = [str(inspection.settings.edition)] * len(inspection.findings) + [RADIAL_STANDARD] * len(inspection.radial)
     classes = ("iso_class", "resolvable_class", "met_class")
@@ -41,7 +41,7 @@ def finding_columns(inspection: Inspection) -> Columns:
 
 
 def flank_columns(inspection: Inspection) -> Columns:
-    """Every flank, left and right of tooth 1 first; see `Inspection.flank_columns`."""
+    """Every flank, left and right of tooth 1 first."""
     evaluations = (("profile", inspection.profile), ("helix", inspection.helix))
     parts: dict[str, Estimate] = {
         f"{name}_{part}": getattr(evaluation, part)
@@ -106,7 +106,7 @@ def trace_columns(inspection: Inspection) -> Columns:
 
 
 def tooth_columns(inspection: Inspection) -> Columns:
-    """Every tooth; see `Inspection.tooth_columns`."""
+    """Every tooth: thickness, span and over pins that start on it."""
     dimensions, teeth = inspection.dimensions, inspection.gear.teeth
     parts: dict[str, Estimate] = {
         "thickness": dimensions.thickness, "chordal_thickness": dimensions.chord_thickness,
