@@ -244,9 +244,11 @@ def _is_count(values: list[float]) -> bool:
 def _columns(header: bytes, width: int, first: list[float]) -> tuple[int, ...]:
     """Which of `width` columns are x, y (and z): by the names in the header, else the first, after a running number in `first`."""
     header = re.sub(rb"[\[(][^\[\]()]*[])]", b"", header)  # units
-    names = [re.sub(rb"[^a-z].*", b"", word.lower()) for word in re.split(rb"[\s,;]+", header.strip(b'#/;!%* \t"')) if word]
-    if len(names) == width and names.count(b"x") == 1 and names.count(b"y") == 1:
-        return tuple(names.index(axis) for axis in (b"x", b"y", b"z") if axis in names)
+    header = header.translate(None, b"\"'").strip(b"#/;!%* \t")
+    for parted in (rb"[,;\t]", rb"[\s,;]+"):  # by delimiters alone first: names may hold blanks
+        names = [re.sub(rb"[^a-z].*", b"", word.strip().lower()) for word in re.split(parted, header) if word.strip()]
+        if len(names) == width and names.count(b"x") == 1 and names.count(b"y") == 1:
+            return tuple(names.index(axis) for axis in (b"x", b"y", b"z") if axis in names)
     skip = 0
     if width > 2 and len(first) > 2:
         skip = int(first[0] in (0.0, 1.0) and bool((np.diff(first) == 1.0).all()))

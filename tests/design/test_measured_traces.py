@@ -63,6 +63,17 @@ def test_pitch_sets_a_flank_to_its_index(tmp_path, design):
     np.testing.assert_allclose(-1e3 * worn.loss[0, 1][:, flank], -shift, atol=1e-6)
 
 
+def test_a_place_that_was_measured_twice_counts_as_the_mean(tmp_path, design):
+    """A sweep up and one down that differ by a hysteresis of 20 µm, and a pitch taken on both: what lies between."""
+    pitch = ["pinion,pitch,1,left,,,22", "pinion,pitch,1,left,,,2"]
+    both = [*profile(lambda roll: 10.0), *profile(lambda roll: -10.0)]
+    _, worn = read_traces(written(tmp_path, *both), design)
+    _, turned = read_traces(written(tmp_path, *both, *pitch), design)
+    flank = worn.radius >= worn.gear.form_radius
+    np.testing.assert_allclose(worn.loss[0, 0][:, flank], 0.0, atol=1e-9)
+    np.testing.assert_allclose(1e3 * turned.loss[0, 0][:, flank], -12.0 * math.cos(math.radians(20.0)), atol=1e-6)
+
+
 def test_the_surface_holds_all_its_traces_and_a_bilinear_one_everywhere():
     """Whatever zero each trace was set to: a twisted plane is found from two profiles and one helix."""
     rolls, heights = np.linspace(0.0, 20.0, 41), np.linspace(0.0, 15.0, 31)

@@ -57,6 +57,8 @@ def test_a_pair():
         ("teeth,24\nmodule,6.35,kg", r"line 2: module in kg: mm"),
         ("teeth,24\nmodule,nan,mm", r"line 2: .* finite"),
         ("teeth,24\nteeth,25", r"line 2: teeth is given twice"),
+        ("teeth,24\nm,2\nx,0.2\nx,0.8,mm", r"line 4: profile_shift is given twice"),
+        ("teeth,24\nm,2\nx,0.8,mm\nprofile_shift,0.2", r"line 4: profile_shift is given twice"),
         ("teeth", r"line 1: 1 columns; key, value, unit"),
         ('teeth,24\n# hub, "rev B\n\nmodule,six,mm', r"line 4: module = six: must be a number"),
         ("teeth,24,-,x", r"line 1: 4 columns"),

@@ -52,6 +52,8 @@ VARIANTS = {
     "intensity and colour": table(extra=" -1034 12 200 255"),
     "normals": table(extra=" 0.0 0.6 0.8"),
     "running number": "".join(f"{i + 1} {line}\n" for i, line in enumerate(table().splitlines())),
+    "quoted names": '"intensity","x","y","z"\n' + "".join(f"158,{x},{y},{z}\n" for x, y, z in POINTS),
+    "names with blanks": "Point Quality;X [mm];Y [mm];Z [mm]\n" + "".join(f"0.5;{x};{y};{z}\n" for x, y, z in POINTS),
     "names in another order": "id,z,x,y\n" + "".join(f"{7 * i},{z},{x},{y}\n" for i, (x, y, z) in enumerate(POINTS)),
 }
 

@@ -83,6 +83,7 @@ def parse_table(text: str) -> dict[str, Any]:
     separator = _separator(lines)
     design: dict[str, Any] = {}
     in_mm: list[tuple[int, str, str, float]] = []
+    given: set[tuple[str, str]] = set()
     for number, row in _rows(lines, separator):
         cells = [_unquoted(cell.strip()) for cell in row]
         if not any(cells):
@@ -97,12 +98,13 @@ def parse_table(text: str) -> dict[str, Any]:
                 f"line {number}: begins with a number: a design as a table has key, value, unit; a scan stands behind the design"
             )
         section, name = _key(key, number)
+        if (section, name) in given:
+            raise InputError(f"line {number}: {name} is given twice")
+        given.add((section, name))
         if name in RATIOS and unit.lower() not in MODULES:
             in_mm.append((number, section, name, _length(value, unit, name, separator, number)))
             continue
         table = design.setdefault(section, {})
-        if name in table:
-            raise InputError(f"line {number}: {name} is given twice")
         table[name] = _value(name, value, unit, separator, number)
     for number, section, name, length in in_mm:
         module = _module(design.get(section, {}))

@@ -67,7 +67,8 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
         ``diameter_mm`` or ``roll_angle_deg`` and ``z_mm`` say where (left out: mid-face for profiles, the reference circle for helices and pitch);
         ``deviation_um`` is along the transverse base tangent, + is more material, of a pitch the index, arc, + counter-clockwise. ``part``: pinion or
         gear, where the number of teeth leaves it open. Rows whose ``place`` is mean count where there are no others of their kind; else, where the
-        rows state ``U_um`` (k = 2), the others count as far as they differ from the mean of their flank by more than that.
+        rows state ``U_um`` (k = 2), the others count as far as they differ from the mean of their flank by more than that. Of a place, or a
+        pitch, that is there several times the mean counts.
     design : Design
         The gear, or the pair it belongs to.
 
@@ -100,7 +101,7 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     gear = design.gears[part]
     refuse(gear, "what is measured on a machine", Toothing.DOUBLE_HELICAL)
     traces: dict[tuple[str, int, int], list[MeasuredTrace]] = {}
-    index: dict[tuple[int, int], tuple[float, float]] = {}
+    indices: dict[tuple[int, int], list[tuple[float, float]]] = {}
     groups: dict[tuple[str, int, int, float], Points] = {}
     means: dict[tuple[str, int, int], Points] = {}
     lines = {row.kind for row in rows if row.words.get("place", "") != "mean"}
@@ -112,7 +113,7 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
         if abs(deviation) > LARGEST_MM:
             raise row.wrong(f"deviation_um {1e3 * deviation:g}", "µm")
         if row.kind == "pitch":
-            index[tooth, side] = roll, deviation
+            indices.setdefault((tooth, side), []).append((roll, deviation))
             continue
         at, place = (z if math.isfinite(z) else 0.5 * gear.face_width, roll) if row.kind == "profile" else (roll, z)
         point = place, deviation, 0.5e-3 * row.number("u_um", needed=False)
@@ -133,6 +134,10 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
             )
     if not any(kind == "profile" for kind, *_ in traces):
         raise InputError(f"{path}: holds no profile; rows of kind profile would be right, with {HEADER}")
+    index = {
+        flank: (math.fsum(r for r, _ in seen) / len(seen), math.fsum(d for _, d in seen) / len(seen))
+        for flank, seen in indices.items()
+    }
     return part, _profiles(gear, traces, index)
 
 
@@ -141,9 +146,11 @@ Points = list[tuple[float, float, float]]
 
 
 def _rising(points: Points) -> Floats:
-    """The points (n, 3) by their places, each place once."""
-    table = np.array(sorted(points))
-    return np.asarray(table[np.unique(table[:, 0], return_index=True)[1]], dtype=np.float64)
+    """The points (n, 3) by their places, each place once: what was measured there several times, as its mean."""
+    table = np.array(points)
+    place, of, times = np.unique(table[:, 0], return_inverse=True, return_counts=True)
+    value, variance = np.bincount(of, table[:, 1]) / times, np.bincount(of, table[:, 2] ** 2) / times**2
+    return np.column_stack([place, value, np.sqrt(variance)])
 
 
 def _beyond_noise(trace: Floats, usual: Points | None) -> Floats:
