@@ -156,6 +156,10 @@ class GearSpec:
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
         if self.tip_chamfer_land is not None:
             _between(self.name, "tip_chamfer_land", self.tip_chamfer_land, 0.0, 1e5, "mm")
+            if self.tip_chamfer_land > 0.0 and self.tip_chamfer == 0.0:
+                raise InputError(
+                    f"[{self.name}] tip_chamfer_land without tip_chamfer: its leg along the tooth's height (mm) is needed"
+                )
         for side in ("left", "right"):
             getattr(self, side).check(self.name)
         self._check_protuberance()

@@ -14,6 +14,7 @@ from gearwear.design import Design, Gear, GearSpec, PairSpec, read_design
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.rexs_writing import rexs_text
 from gearwear.design.files.toml import parse_design
+from gearwear.design.files.writing import design_text
 from gearwear.design.modification import FlankModification
 from gearwear.errors import InputError
 
@@ -195,3 +196,13 @@ def test_models_write_it(tmp_path, capsys):
     assert main([str(design), "--rexs", "--out", str(tmp_path / "out")]) == 0
     assert "design.rexs" in capsys.readouterr().out
     assert read_design(tmp_path / "out" / "design.rexs").gears["gear"].spec == read_design(design).gears["gear"].spec
+
+
+def test_a_tip_chamfer_of_unequal_legs_is_not_written_as_one_of_equal_legs():
+    spec = GearSpec("gear", 24, 3.0, 20.0, tip_chamfer=0.4, tip_chamfer_land=0.3)
+    for write in (design_text, lambda spec: rexs_text(_design(spec))):
+        with pytest.raises(InputError, match=r"tip_chamfer_land = 0.3 mm: .* has one leg"):
+            write(spec)
+        assert "0.4" in write(replace(spec, tip_chamfer_land=0.4))
+    with pytest.raises(InputError, match="tip_chamfer_land without tip_chamfer"):
+        replace(spec, tip_chamfer=0.0)

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
+from gearwear.design.files.writing import check_even_chamfer
 from gearwear.design.gear import Gear
 from gearwear.design.modification import FlankModification
 from gearwear.design.pair import Design
@@ -66,7 +67,8 @@ def rexs_text(design: Design) -> str:
     Raises
     ------
     InputError
-        For what has no place there: rings, double helical gears, thinned teeth, slopes (REXS does not say their sign).
+        For what has no place there: rings, double helical gears, thinned teeth, tip chamfers of unequal legs, slopes (REXS does not say
+        their sign).
     """
     writer = _Writer()
     gears = {part: _gear(writer, gear) for part, gear in design.gears.items()}
@@ -82,6 +84,7 @@ def rexs_text(design: Design) -> str:
 def _gear(writer: _Writer, gear: Gear) -> str:
     """The gear with flanks, tool and modifications; its id."""
     spec = gear.spec
+    check_even_chamfer(spec, "a REXS model")
     for key, value in (
         ("internal", spec.internal),
         ("gap", spec.gap),

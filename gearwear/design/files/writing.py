@@ -9,6 +9,7 @@ from gearwear.design.modification import AMOUNTS, FlankModification
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.standards import diametral_pitch
+from gearwear.errors import InputError
 
 UNITS = {
     "module": "mm", "pressure_angle": "degrees", "helix_angle": "degrees, + right hand", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
@@ -35,6 +36,11 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     -------
     str
 
+    Raises
+    ------
+    InputError
+        If the legs of the tip chamfer differ: a design file has one.
+
     Examples
     --------
     >>> print(design_text(GearSpec("gear", 24, 6.35, 15.0), ["From a drawing."]), end="")
@@ -51,6 +57,7 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     rack_tip_radius = 0.3                # x module
     thinning = 0                         # mm, arc at the reference circle
     """
+    check_even_chamfer(spec, "a design file")
     values: dict[str, float] = {"internal": True} if spec.internal else {}
     values["teeth"] = spec.teeth
     pitch = diametral_pitch(spec.normal_module)
@@ -97,6 +104,20 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
         stated = _modification(spec.left if side is Side.LEFT else spec.right)
         lines += ["", f"[{spec.name}.{side}]", *stated] if stated else []
     return "\n".join(lines) + "\n"
+
+
+def check_even_chamfer(spec: GearSpec, written: str) -> None:
+    """Refuse a tip chamfer whose legs differ, for which there is no place in what is `written`.
+
+    Raises
+    ------
+    InputError
+    """
+    if spec.tip_chamfer_on_land != spec.tip_chamfer:
+        raise InputError(
+            f"[{spec.name}] tip_chamfer_land = {spec.tip_chamfer_land:g} mm: {written} has one leg for a tip chamfer; that of tip_chamfer, "
+            f"{spec.tip_chamfer:g} mm, or leaving it out would be right"
+        )
 
 
 def _modification(modification: FlankModification) -> list[str]:
