@@ -47,13 +47,13 @@ class Composite:
     master_teeth : int
         Of the master.
     centre_distance : float
-        Tight centre distance of the nominal gear with the master, mm.
+        Tight centre distance of the nominal gear, without modifications of its flanks, with the master, mm.
     rotation : (n,) float
         Of the gear, rad.
     single : (2, n) float
-        Advance of the master at the fixed centre distance against the nominal gear, mm of arc at the reference circle; left flanks first.
+        Advance of the master at the fixed centre distance against that gear, mm of arc at the reference circle; left flanks first.
     double : (n,) float
-        Tight centre distance less that of the nominal gear, mm.
+        Tight centre distance less `centre_distance`, mm.
     single_total, single_tooth : Estimate
         F_i′ and f_i′ of either side, (2,) mm: range over a revolution, and the greatest range within a pitch.
     double_total, double_tooth : Estimate
@@ -92,7 +92,7 @@ def evaluate_composite(gear: Gear, profile: Evaluation, areal: Areal, covariance
 
     Notes
     -----
-    The flank is taken as ``δ(L, z) = profile(L) + h(z) + ¼ S u v``, h what the cells of a height leave over the profile on the mean, S the twist: what many
+    The flank is taken as ``δ(L, z) = δ₀(L, z) + profile(L) + h(z) + ¼ S u v``, δ₀ what the drawing modifies, h what the cells of a height leave over the profile on the mean, S the twist: what many
     points say together; the greatest of single cells would be their noise. A flank that is no such sum (`NOT_ADDITIVE`), worn in part or pitted, is taken as its
     cells, each smoothed with its neighbours (1 2 1 both ways). A burr narrower than a cell is missed. The master reaches from the start of the profile
     evaluation to the tip, over the helix evaluation range.
@@ -112,6 +112,8 @@ def evaluate_composite(gear: Gear, profile: Evaluation, areal: Areal, covariance
         return None
     roll, z = np.linspace(*reach, NODES), areal.z
     flanks, across_std = _flanks(profile, areal, roll)
+    # The master touches involutes: it feels what the drawing modifies, too.
+    flanks += np.stack([gear.drawn(side).offset(gear.orientation * roll, z[:, None]) for side in Side])
     noise = (_profile_noise(profile, roll, flanks), _for_flanks(np.random.default_rng(1), across_std, flanks))
     columns, motions = None, np.random.default_rng(2).standard_normal((REPEATS, 6 if covariance is None else len(covariance)))
     if covariance is not None:

@@ -1,14 +1,17 @@
 """Sections, surfaces, waves and rolling with a master, on flanks of which it is known what was put in."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from gearwear.design.gear import Gear
+from gearwear.design.modification import FlankModification
 from gearwear.design.profiles import nominal_profiles
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
+from gearwear.inspection import Settings, inspect
 from gearwear.inspection.areal import evaluate_areal
 from gearwear.inspection.composite import MASTER_TEETH, POSITIONS, evaluate_composite
 from gearwear.inspection.evaluation import evaluate
@@ -17,7 +20,7 @@ from gearwear.inspection.sections import take_sections
 from gearwear.inspection.traces import FlankSamples, flank_samples, profile_traces
 from gearwear.inspection.waviness import wave_spectrum
 from gearwear.meshing.contact import mesh_contact
-from tests.inspection.synthetic import flanks
+from tests.inspection.synthetic import displaced, flanks
 
 UM = 1e-3
 SPEC = GearSpec("pinion", 20, 3.0, 20.0)
@@ -175,6 +178,23 @@ def test_eccentricity_alone_reads_twice_itself(gear):
     assert found.single_total.value == pytest.approx(2 * e / math.cos(math.radians(20.0)), rel=3e-3)
     # Within a pitch the cosine changes by at most 2 e sin(π / z).
     assert float(found.double_tooth.value) == pytest.approx(2 * e * math.sin(math.pi / gear.teeth), rel=1e-2)
+
+
+@pytest.mark.parametrize("drawn", [{"profile_crowning": 0.02}, {"profile_slope": 0.02}])
+def test_a_master_feels_the_same_part_whatever_its_drawing(drawn):
+    """Flanks that are modified on purpose, and flanks that came out so: one part, and one reading."""
+    both = FlankModification(**drawn)
+    spec = GearSpec("gear", 30, 3.0, 20.0)
+    plain, modified = Gear.from_spec(spec), Gear.from_spec(replace(spec, left=both, right=both))
+    asked = Settings(noise=1e-4, laboratory=True)
+    on_purpose = inspect(flanks(modified, 60, 12), modified, asked).laboratory.composite
+    points = flanks(plain, 60, 12)
+    made = np.where(points.side > 0, *(modified.drawn(side).offset(points.roll, points.position[:, 2]) for side in Side))
+    by_chance = inspect(displaced(points, made, plain), plain, asked).laboratory.composite
+    for name in ("single_tooth", "double_total", "double_tooth"):
+        there, here = getattr(by_chance, name).value, getattr(on_purpose, name).value
+        assert here == pytest.approx(there, abs=5e-4) and np.max(there) > 4e-3  # traces of the other are filtered and binned
+    assert on_purpose.double.mean() == pytest.approx(by_chance.double.mean(), abs=5e-4)
 
 
 @pytest.mark.parametrize("sides", [1, 2])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,6 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.composite import Composite
-from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.laboratory import Laboratory
 from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
@@ -75,9 +73,17 @@ def areal_chart(figure: Figure, inspection: Inspection, examined: Laboratory) ->
     edges = (COLUMNS[Side.LEFT][0], COLUMNS[Side.RIGHT][1])
     axis = _axes(figure, 3, edges)
     if examined.composite is None:
-        axis.text(0.5, 0.5, "not rolled: a flank was not seen", transform=axis.transAxes, ha="center", fontsize=8, color=MUTED)
+        axis.text(
+            0.5,
+            0.5,
+            "not rolled: a flank was not seen, or the involute is shorter than a base pitch",
+            transform=axis.transAxes,
+            ha="center",
+            fontsize=8,
+            color=MUTED,
+        )
     else:
-        _composite(axis, examined.composite, inspection.radial)
+        _composite(axis, examined.composite, inspection)
     return figure
 
 
@@ -210,7 +216,7 @@ def _orders(axis: Axes, waviness: Waviness, side: Side) -> None:
     )
 
 
-def _composite(axis: Axes, composite: Composite, radial: Sequence[Finding]) -> None:
+def _composite(axis: Axes, composite: Composite, inspection: Inspection) -> None:
     turned: Floats = np.degrees(composite.rotation)
     axis.plot(turned, 1e3 * composite.double, color=INK, lw=0.9)
     axis.set_xlim(0.0, 360.0)
@@ -220,10 +226,11 @@ def _composite(axis: Axes, composite: Composite, radial: Sequence[Finding]) -> N
     axis.text(1.0, -0.2, "rotation of the gear, °", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
     rolled = [
         f"{finding.symbol.replace('_', '')} {micrometres(finding.value)} ± {micrometres(finding.expanded)} µm, {finding.statement}"
-        for finding in radial
+        for finding in inspection.radial
     ]
+    design = "the design without modifications" if inspection.gear.modified else "the design"
     _title(
         axis,
-        f"Tight centre distance with a master of {composite.master_teeth} teeth, less that of the design ({composite.centre_distance:.3f} mm)\n"
+        f"Tight centre distance with a master of {composite.master_teeth} teeth, less that of {design} ({composite.centre_distance:.3f} mm)\n"
         f"{'   ·   '.join(rolled)}   ({RADIAL_STANDARD})",
     )
