@@ -141,6 +141,8 @@ class Inspection(Card):
 
 RING = "A ring: no span fits."
 """What is not inspected on a ring."""
+PITCH_ABOUT = "Pitch, index and runout are about"
+"""How the note begins that says which axis."""
 
 
 @on_one_thread
@@ -294,9 +296,9 @@ def _notes_on_uncertainty(scan: PreparedScan) -> list[str]:
     """What pitch and runout are about, and what U holds."""
     axis, factor, pose = scan.settings.axis, scan.sample_factor, scan.settings.pose_covariance
     notes = [
-        f"Pitch, index and runout are about the axis of the {'outside' if axis == 'bore' and scan.gear.spec.internal else DATUM_WORDS[axis]}."
+        f"{PITCH_ABOUT} the axis of the {'outside' if axis == 'bore' and scan.gear.spec.internal else DATUM_WORDS[axis]}."
         if axis in DATUM_WORDS
-        else "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
+        else f"{PITCH_ABOUT} the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
     ]
     if factor > 1.0:

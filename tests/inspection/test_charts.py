@@ -2,6 +2,7 @@
 
 import io
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -151,6 +152,15 @@ def test_values_of_bars_touch_neither_bar_nor_whisker(teeth):
             assert not any(box.overlaps(bar) and min(box.y1, bar.y1) - max(box.y0, bar.y0) > 0.5 for bar in bars)
             across = (ends[:, 0, 0] > box.x0) & (ends[:, 0, 0] < box.x1)
             assert not (across & (ends[..., 1].max(axis=1) > box.y0) & (ends[..., 1].min(axis=1) < box.y1)).any()
+
+
+@pytest.mark.parametrize(
+    ("axis", "said"), [("bore", "about the axis of the bore."), ("teeth", "takes their common eccentricity")]
+)
+def test_the_pitch_chart_says_about_which_axis_it_is(found, axis, said):
+    about = replace(found, notes=inspect(flanks(found.gear, 20, 6), found.gear, Settings(axis=axis, laboratory=False)).notes)
+    told = " ".join(words(pitch_chart(Figure(), about)))
+    assert said in told and ("registered on" in told) == (axis == "teeth")
 
 
 def test_topography_draws_only_what_was_seen(found):

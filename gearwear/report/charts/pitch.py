@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.grading import Finding
-from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.inspection import PITCH_ABOUT, Inspection
 from gearwear.inspection.pitch import Runout
 from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, headline, median_seen, micrometres, plain, sheet
 from gearwear.report.charts.trace_table import required_tolerances
@@ -83,7 +83,7 @@ def _head(page: Axes, inspection: Inspection) -> None:
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
     words = [
         "Values in µm, U (k = 2) from the scan's scatter. A bar with two strokes across goes on: its value stands at its end. Dashed, where near: ± tolerance of the required class.",
-        "About the axis of the registration; without a bore or another datum the teeth's own common eccentricity is not in it.",
+        *(note for note in inspection.notes if note.startswith(PITCH_ABOUT)),
         SOURCES,
     ]
     page.text(8, 13.5, "\n".join(words), fontsize=7, color=MUTED, va="top", linespacing=1.3)
