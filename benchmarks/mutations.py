@@ -221,7 +221,7 @@ MUTATIONS = [
         ("meshing/passes.py", "each_half.mean(axis=0), self", "each_half.max(axis=0), self", "meshing/test_helical.py"),
         ("design/pair.py", "width = 0.5 * (width - gap)", "width = width - gap", "meshing/test_helical.py"),
         ("inspection/dimensions.py", "PLATE_HOLD = 3.0", "PLATE_HOLD = 0.0", "inspection/test_helical_dimensions.py"),
-        ("inspection/dimensions.py", "- side * 0.5 * gauge.rise", "+ side * 0.5 * gauge.rise", "inspection/test_helical_dimensions.py"),
+        ("inspection/dimensions.py", "- side * 0.5 * rise", "+ side * 0.5 * rise", "inspection/test_helical_dimensions.py"),
         ("brep/screw.py", "TURN_TOLERANCE = 2e-11", "TURN_TOLERANCE = 2e-6", "brep/test_twisted.py"),
         # wear
         ("wear/regions.py", "LEAST_VOLUME = 5.0", "LEAST_VOLUME = 4.0", "wear/test_uncertainty.py"),

@@ -164,6 +164,7 @@ def test_no_room_for_a_file_of_more_than_so_many_bytes(tmp_path, command, room):
         os.dup2(writing, 2)
         sys.stderr = os.fdopen(2, "w")
         sys.stdout = os.fdopen(1, "w")
+        sys.dont_write_bytecode = True  # of a module that changed, cut off: no later run could load it
         resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
         status = main([*words, "--out", str(out)])
         sys.stderr.flush()
@@ -193,6 +194,7 @@ def test_no_room_for_the_last_byte_of_any_file_of_a_comparison(tmp_path):
     def body(room: int) -> Callable[[], None]:
         def run() -> None:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            sys.dont_write_bytecode = True  # of a module that changed, cut off: no later run could load it
             resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
             try:
                 write_results(results, out, page=room == page - 1)
