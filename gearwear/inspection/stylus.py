@@ -87,7 +87,8 @@ def felt(traces: Traces, radius: float | None, gear: Gear) -> Traces:
 
     Notes
     -----
-    Places are along the surface: a profile's arc is L² / (2 r_b), a helix's z / cos β_r at the middle of its band. The flank is straight along
+    Places are along the surface: a profile's arc is L² / (2 r_b), a helix's z / cos β_r at the middle of its band. Heights are along the
+    normal, in which the ball is round: cos β_b of a deviation along the transverse base tangent. The flank is straight along
     its generators and square to them curved by cos β_b / L: the transverse involute by 1 / L, its normal inclined by β_b (Meusnier). A ball
     of radius R lies on it as one of radius R' on a plane: 1 / R' = 1 / R + ι cos β_b / L, ι −1 on a ring, which is hollow. A helix trace lies
     within degrees of the generator: there the flank is taken as straight.
@@ -97,8 +98,8 @@ def felt(traces: Traces, radius: float | None, gear: Gear) -> Traces:
         return traces
     at = math.hypot(gear.base_radius, 0.5 * (traces.band[0] + traces.band[1])) if traces.along == "z" else gear.base_radius
     along_helix = math.hypot(1.0, at / gear.base_radius * math.tan(math.acos(gear.base_helix_cosine)))  # 1 / cos β_r
-    deviation = traces.deviation.copy()
-    for flank in np.ndindex(*deviation.shape[:2]):
+    height = gear.base_helix_cosine * traces.deviation
+    for flank in np.ndindex(*height.shape[:2]):
         seen = np.flatnonzero((traces.count[flank] > 0) & np.isfinite(traces.station[flank]))
         if len(seen) < 3:
             continue
@@ -112,5 +113,5 @@ def felt(traces: Traces, radius: float | None, gear: Gear) -> Traces:
             ball = 1.0 / np.maximum(1.0 / radius + curved, LEAST_CURVATURE)
         else:
             station = station * along_helix
-        deviation[flank][order] = closed(station, deviation[flank][order], ball)
-    return replace(traces, deviation=deviation)
+        height[flank][order] = closed(station, height[flank][order], ball)
+    return replace(traces, deviation=height / gear.base_helix_cosine)

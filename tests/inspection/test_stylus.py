@@ -104,7 +104,8 @@ def test_an_inspection_with_a_ball_sees_less_of_a_narrow_scratch():
 
 @pytest.mark.parametrize("internal", [False, True])
 def test_against_a_helical_flank_the_ball_is_that_against_its_normal_section(internal):
-    """The curvature is taken by differences from points of the involute helicoid; the groove is bridged to R' − √(R'² − w²/4)."""
+    """The curvature is taken by differences from points of the involute helicoid; the groove is bridged to R' − √(R'² − w²/4) along the normal,
+    and to 1 / cos β_b of that along the transverse base tangent, as traces are."""
     gear = Gear.from_spec(GearSpec("gear", 50, 3.0, 20.0, helix_angle=math.radians(30.0), internal=internal))
     base, cosine, middle, step = gear.base_radius, gear.base_helix_cosine, 0.5 * (gear.form_roll + gear.tip_roll), 1e-2
 
@@ -125,7 +126,7 @@ def test_against_a_helical_flank_the_ball_is_that_against_its_normal_section(int
     deviation = np.where(groove, -0.9, 0.0)[order][None, None, :] * np.ones((1, 2, 1))
     found = felt(hand_traces(station[order], deviation, np.full(len(roll), 1e-4)), radius, gear).deviation[0, 0]
     ball = 1.0 / (1.0 / radius + gear.orientation * bent)
-    assert found.min() == pytest.approx(-(ball - math.sqrt(ball**2 - 0.25 * width**2)), rel=0.02)
+    assert found.min() == pytest.approx(-(ball - math.sqrt(ball**2 - 0.25 * width**2)) / cosine, rel=0.02)
 
 
 def test_a_helix_trace_is_as_long_as_the_helix_at_its_radius():
@@ -135,7 +136,8 @@ def test_a_helix_trace_is_as_long_as_the_helix_at_its_radius():
     traces = hand_traces(z, np.where(groove, -0.9, 0.0)[None, None, :] * np.ones((1, 2, 1)), np.full(len(z), 1e-4), "z")
     traces = replace(traces, band=(gear.reference_roll - 1.0, gear.reference_roll + 1.0))
     found = felt(traces, radius, gear).deviation[0, 0]
-    assert found.min() == pytest.approx(-(radius - math.sqrt(radius**2 - 0.25 * width**2)), abs=0.01 * 0.6 / 0.8)
+    sag = (radius - math.sqrt(radius**2 - 0.25 * width**2)) / gear.base_helix_cosine
+    assert found.min() == pytest.approx(-sag, abs=0.01 * 0.6 / 0.8)
 
 
 @pytest.mark.parametrize("radius", [math.inf, math.nan, 1e200, 1e-300, 0.0, -1.0])
