@@ -19,6 +19,7 @@ from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.linear import LinearResult, linear_contact
 from gearwear.meshing.passes import Cycle
+from gearwear.meshing.slices import facing_mate, heights_beside
 from gearwear.meshing.spread import ContactSpread, contact_spread
 from gearwear.meshing.study import facing
 from gearwear.placing.cells import CellGrid
@@ -124,7 +125,14 @@ def beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfil
     """A function that puts the scanned gear's profiles and the nominal mate in order: pinion, gear."""
     driven = measured.part == "gear"
     mate = design.gears["pinion" if driven else "gear"]
-    heights = node_heights(measured.cells.grid) if driven else section_heights(mate)  # the slices are the driver's
+    heights = section_heights(mate)
+    if driven:  # the slices are the driver's
+        heights = heights_beside(mate, node_heights(measured.cells.grid), measured.gear)
     least, most = sorted((mate.root_radius, mate.tip_radius))
     other = nominal_profiles(mate, np.linspace(least, most, 200), heights)
-    return lambda scanned: (other, scanned) if driven else (scanned, other)
+
+    def in_order(scanned: ToothProfiles) -> tuple[ToothProfiles, ToothProfiles]:
+        own = facing_mate(scanned, mate)
+        return (other, own) if driven else (own, other)
+
+    return in_order

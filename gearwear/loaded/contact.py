@@ -70,8 +70,7 @@ def loaded_contact(
     Parameters
     ----------
     driver, driven : ToothProfiles
-        The flanks of both gears, external: of spur gears in one z frame with both faces from z = 0, of helical ones each in its design frame, with
-        mid-faces at one height.
+        The flanks of both gears, external, each in its own design frame, with mid-faces at one height.
     centre_distance : float
         mm; the housing.
     force : float

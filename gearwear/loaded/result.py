@@ -52,7 +52,7 @@ class LoadedContact(Card):
     compliance : (p,) float
         −dA/dF of the loaded advance, mm/N.
     z, widths : (s,) float
-        Slices, mm.
+        Slices: their middles on the driver, and widths, mm.
     driver_tooth, driven_tooth : (p, m) int
         0-based.
     force : (p, m, s) float

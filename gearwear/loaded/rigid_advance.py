@@ -33,7 +33,7 @@ class RigidAdvance:
     nominal : float
         Advance of the design, mm: zero of the transmission error.
     z, widths : (s,) float
-        Middle and width of the slices, mm.
+        Middle, on the driver, and width of the slices, mm.
     half : (s,) int
         Half of a double helical gear that a slice belongs to.
     advance : (p, m, s) float
@@ -122,7 +122,7 @@ def rigid_advance(
 
     def prepared(first: ToothProfiles, second: ToothProfiles) -> Passes:
         sliced = replace(first, z=face.z, half_angle=first.at_heights(face.z))
-        mate_sliced = replace(second, z=face.z, half_angle=second.at_heights(face.mate_z))
+        mate_sliced = replace(second, z=face.mate_z, half_angle=second.at_heights(face.mate_z))
         return Passes.of(sliced, mate_sliced, centre_distance, side, n, start_tooth)
 
     run, others = prepared(driver, driven), [prepared(*pair) for pair in variants]

@@ -54,9 +54,9 @@ def mesh_contact(
     Parameters
     ----------
     driver, driven : ToothProfiles
-        The flanks of both gears; the driven one may be a ring. Of spur gears in one z frame, and the slices are the driver's; of helical gears in the design frame
-        of each, with mid-faces at one height, and the slices are those of `Slices`. A gear with one slice is
-        taken as the same at all heights, else it is interpolated linearly and goes on beyond its ends as it is there.
+        The flanks of both gears, each in its own design frame, with mid-faces at one height; the driven one may be a ring. They touch on the face
+        that both have, in the slices of `Slices`: of spur gears the driver's. A gear with one slice is taken as the same at all heights, else
+        it is interpolated linearly and goes on beyond its rows as it is there.
         The last radius (of a ring the first) is the tip corner; a tip chamfer beyond it touches nothing.
     centre_distance : float
         mm; the housing.
@@ -127,7 +127,7 @@ def mesh_contact(
         one, mate_of_it = slices.cut(*pair)
         same, same_mate = pair[0] is driver, pair[1] is driven
         others.append(replace(run, driver=run.driver if same else one, driven=run.driven if same_mate else mate_of_it))
-    pattern = [ContactPattern.empty(member, run.driver.z, n) for member in (gear, mate)]
+    pattern = [ContactPattern.empty(member.gear, member.z, n) for member in (run.driver, run.driven)]
     size = run.passes_at_a_time()
     blocks: list[Positions] = []
     for first in range(0, passes, size):

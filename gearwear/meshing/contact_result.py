@@ -27,7 +27,7 @@ class ContactPattern:
     roll_edges : (n + 1,) float
         Edges of the cells in length of roll, mm; contact below the base circle counts in the first cell.
     z : (n_z,) float
-        Heights of the slices, mm.
+        Heights of the slices on this gear, mm.
     count : (teeth, n_z, n) int
         In how many positions the point of least gap of a tooth and slice lay in the cell and was within tolerance.
     passes : (teeth,) int
@@ -120,7 +120,7 @@ class ContactResult(Card):
     driver_tooth, driven_tooth : (n,) int
         The pair that carries.
     z, driver_radius, driven_radius : (n,) float
-        Where it carries: height, and radius on either gear.
+        Where it carries: height on the driver, and radius on either gear.
     pair_driver_tooth, pair_driven_tooth : (n, m) int
         Pairs near the mesh.
     pair_gap : (n, m) float

@@ -95,7 +95,7 @@ class Passes:
 
     driver: ToothProfiles
     driven: ToothProfiles
-    """Both at the same heights."""
+    """Both in the same slices."""
     phase: Floats
     """(n_z,) angle by which the driver's slices are ahead of mid-face, counter-clockwise, rad; 0 for a spur gear."""
     half: Ints

@@ -15,7 +15,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import ToothProfiles
+from gearwear.design.profiles import ToothProfiles, section_heights
 
 STEPS_PER_PITCH = 32
 """Slices while the helix gets ahead by one pitch, at least: what a profile 20 µm off does is then within 0.1 µm of that with any number."""
@@ -26,38 +26,42 @@ SAME_HEIGHT = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Slices:
-    """Heights common to both gears; mm from mid-face, which they share.
+    """Heights at which both gears are looked at, mid-faces at one height.
 
     Parameters
     ----------
-    height : (n,) float or None
-        Rising. None: those the driver's profiles have, as with spur gears, where a slice stands for its surroundings.
+    z, mate_z : (n,) float
+        mm, rising, each in its own gear's frame: of the driver, and of the driven gear.
     """
 
-    height: Floats | None
+    z: Floats
+    mate_z: Floats
 
     @classmethod
     def of(cls, driver: ToothProfiles, driven: ToothProfiles) -> Slices:
-        """Slices of a pair.
+        """Slices of a pair, on the face that both gears have.
 
-        On helical gears the ends of the common face are in, because there contact begins and ends; so is every row in which a flank
+        On spur gears they are the driver's rows, each of which stands for its surroundings; the ends of the common face are in where the
+        driver is wider. On helical gears these ends are in, because there contact begins and ends; so is every row in which a flank
         differs from the next, and as many between as let the contact move on in small steps.
         """
-        gear = driver.gear
+        gear, mate = driver.gear, driven.gear
+        ends = common_face(gear, mate)
+        middle = 0.5 * gear.face_width
         if gear.twist == 0.0:
-            return cls(None)
+            z = np.unique(np.clip(driver.z, middle + ends[0][0], middle + ends[-1][1]))
+            return cls(z, beside(z, gear, mate))
         rows = np.concatenate([_rows(profiles) for profiles in (driver, driven)])
         step = gear.pitch_angle / abs(gear.twist) / STEPS_PER_PITCH
-        return cls(np.concatenate([_filled(*ends, rows, step) for ends in common_face(gear, driven.gear)]))
+        height = np.concatenate([_filled(*end, rows, step) for end in ends])
+        return cls(height + middle, height + 0.5 * mate.face_width)
 
     def cut(self, driver: ToothProfiles, driven: ToothProfiles) -> tuple[ToothProfiles, ToothProfiles]:
-        """Both gears in these slices, z that of the driver; the same profiles where there is nothing to cut."""
-        if self.height is None:
-            return driver, replace(driven, z=driver.z, half_angle=driven.at_heights(driver.z))
-        middle = 0.5 * driver.gear.face_width
-        z = self.height + middle
-        mate = driven.at_heights(self.height + 0.5 * driven.gear.face_width)
-        return replace(driver, z=z, half_angle=driver.at_heights(z)), replace(driven, z=z, half_angle=mate)
+        """Both gears in these slices."""
+        return (
+            replace(driver, z=self.z, half_angle=driver.at_heights(self.z)),
+            replace(driven, z=self.mate_z, half_angle=driven.at_heights(self.mate_z)),
+        )
 
 
 class FaceParts(NamedTuple):
@@ -75,15 +79,50 @@ class FaceParts(NamedTuple):
 
     @classmethod
     def of(cls, gear: Gear, mate: Gear, count: int) -> FaceParts:
-        """`count` parts, as many of each half of a double helical gear; the faces of spur gears both begin at z = 0."""
-        width = min(gear.face_width, mate.face_width)
-        ends = [(0.0, width)] if gear.twist == 0.0 else common_face(gear, mate)
-        edges = [np.linspace(low, high, count + 1) for low, high in ends]
+        """`count` parts, as many of each half of a double helical gear."""
+        ends, width = common_face(gear, mate), min(gear.face_width, mate.face_width)
+        edges = [np.linspace(0.0, high - low, count + 1) for low, high in ends]  # from the lower end of each
         middle = np.concatenate([0.5 * (part[1:] + part[:-1]) for part in edges])
-        widths, half = np.concatenate([np.diff(part) for part in edges]), np.repeat(np.arange(len(ends)), count)
-        if gear.twist == 0.0:
-            return cls(middle, middle, widths, middle / width - 0.5, half)
-        return cls(middle + 0.5 * gear.face_width, middle + 0.5 * mate.face_width, widths, middle / width, half)
+        low = np.repeat([low for low, _ in ends], count)
+        return cls(
+            z=middle + (low + 0.5 * gear.face_width),
+            mate_z=middle + (low + 0.5 * mate.face_width),
+            widths=np.concatenate([np.diff(part) for part in edges]),
+            place=middle / width + low / width,
+            half=np.repeat(np.arange(len(ends)), count),
+        )
+
+
+def beside(z: Floats, gear: Gear, mate: Gear) -> Floats:
+    """Heights in the frame of a gear, mm, in that of its mate: mid-faces are at one height."""
+    return z + 0.5 * (mate.face_width - gear.face_width)
+
+
+def on_face_of(mate: Gear, z: Floats, gear: Gear) -> Floats:
+    """Heights on the face of a gear, mm, as heights on that of its mate, rising; its end stands for what lies beyond it."""
+    return np.unique(np.clip(beside(z, gear, mate), 0.0, mate.face_width))
+
+
+def heights_beside(mate: Gear, z: Floats, gear: Gear) -> Floats:
+    """Heights, mm, of sections of a mate as drawn that show what it has modified along its face, and the rows `z` of a gear beside it."""
+    if not mate.modified_along_face:
+        return on_face_of(mate, z, gear)
+    return np.union1d(on_face_of(mate, np.append(z, (0.0, gear.face_width)), gear), section_heights(mate))
+
+
+def facing_mate(profiles: ToothProfiles, mate: Gear) -> ToothProfiles:
+    """A measured gear by the rows that lie on the face it shares with its mate alone; as it is where none does, or all do.
+
+    A row stands for half the way to the next. What one beside the edge of the common face says is half of an overhang that no mate wears.
+    """
+    z, middle, ends = profiles.z, 0.5 * profiles.gear.face_width, common_face(profiles.gear, mate)
+    near = SAME_HEIGHT * profiles.gear.face_width
+    between = 0.5 * (z[1:] + z[:-1])
+    low, high = np.append(z[0], between), np.append(between, z[-1])
+    alone = (low > middle + ends[0][0] - near) & (high < middle + ends[-1][1] + near)
+    if alone.all() or not alone.any():
+        return profiles
+    return replace(profiles, z=z[alone], half_angle=profiles.half_angle[:, :, alone])
 
 
 def common_face(gear: Gear, mate: Gear) -> list[tuple[float, float]]:

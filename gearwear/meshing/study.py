@@ -25,6 +25,7 @@ from gearwear.meshing.passes import Cycle
 from gearwear.meshing.path import PathLimit, Sliding, radius_at_roll, sliding
 from gearwear.meshing.recommended import RecommendedBacklash, recommended_backlash
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
+from gearwear.meshing.slices import beside, facing_mate, heights_beside
 from gearwear.meshing.worn_gear import Measured, WornGear, as_measured, each_measured, in_same_slices, is_tooth, uniform_loss
 from gearwear.threads import on_one_thread
 
@@ -153,6 +154,12 @@ class PairStudy(Card):
         return self.design.gears["gear"]
 
     @property
+    def heights(self) -> Floats:
+        """(n,) heights at which the contact carries, mm, on the gear with worn flanks, of two the one that was given first; else on the pinion."""
+        z = self.contact.z
+        return beside(z, self.pinion, self.gear) if self.worn.part == "gear" else z
+
+    @property
     def recommended(self) -> RecommendedBacklash:
         """Backlash that standards and handbooks recommend for the pair."""
         return recommended_backlash(self.pinion, self.exact.centre_distance)
@@ -275,7 +282,7 @@ def study_meshing(
         A pair.
     wear : path or ToothProfiles, a sequence of both gears', or None
         One gear as it is, or each of them: the folder that `compare` wrote to, its ``worn_profiles.npz``, measured traces as CSV
-        (`gearwear.design.files.traces`), or profiles of either gear. Both have z = 0 at the same end.
+        (`gearwear.design.files.traces`), or profiles of either gear. Both have z = 0 at the same end; mid-faces are at one height.
     loss : float or None
         In place of `wear`, a uniform loss, mm along the normal, on flanks that carry.
     teeth : sequence of int or None
@@ -333,8 +340,8 @@ def study_meshing(
         raise InputError(f"mate tooth {mate_tooth}: the gear has teeth from 1 to {gear.teeth}, and one of them would be right")
     exact = exact_meshing(pinion, gear, centre)
     flanks = dict(zip(("pinion", "gear"), flanks_as_drawn(pinion, gear), strict=True))
-    worn = as_measured(design, measured)
-    as_read = tuple(profiles for _, profiles in worn)
+    read = as_measured(design, measured)
+    worn = [(own, facing_mate(profiles, pinion if own.part == "gear" else gear)) for own, profiles in read]
     notes = list(_notes(design, exact))
     if loss is not None:
         chosen = part or "pinion"
@@ -342,9 +349,10 @@ def study_meshing(
     flanks.update({str(worn_gear.part): profiles for worn_gear, profiles in worn})
     parts = [worn_gear.part for worn_gear, _ in worn]
     if parts == ["gear"]:  # the slices are those of the pinion, which drives
-        flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, flanks["gear"].z)
-    elif len(parts) == 2:
+        flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, heights_beside(pinion, flanks["gear"].z, gear))
+    elif len(parts) == 2 or len(flanks["pinion"].z) == 1:
         flanks["pinion"] = in_same_slices(flanks["pinion"], flanks["gear"])
+    if len(parts) == 2:
         notes += _notes_of_both(design, [profiles for _, profiles in worn], mate_tooth)
     if worn and drive is None:
         lost = np.sum([_loss_by_pinion_side(profiles) for _, profiles in worn], axis=0)
@@ -368,7 +376,7 @@ def study_meshing(
         shafts=shafts,
         notes=tuple(notes),
         flanks=(flanks["pinion"], flanks["gear"]),
-        measured=as_read,
+        measured=tuple(profiles for _, profiles in read),
     )
 
 
@@ -406,8 +414,7 @@ def facing(gear: Gear, side: Side) -> Side:
 def flanks_as_drawn(pinion: Gear, gear: Gear) -> tuple[ToothProfiles, ToothProfiles]:
     """Both gears as designed, in sections that show what either has modified along its face; the slices are those of the pinion."""
     driven = nominal_profiles(gear)
-    heights = driven.z * pinion.face_width / gear.face_width if gear.modified_along_face else None
-    return nominal_profiles(pinion, z=heights), driven
+    return nominal_profiles(pinion, z=heights_beside(pinion, driven.z, gear)), driven
 
 
 def transmission_error_as_drawn(pinion: Gear, gear: Gear, centre_distance: float, drive_side: Side) -> float:

@@ -18,6 +18,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import teeth_words
 from gearwear.design.side import Side
 from gearwear.errors import InputError
+from gearwear.meshing.slices import on_face_of
 
 Measured = Path | str | ToothProfiles
 """A gear as it is: the folder that `compare` wrote to, its ``worn_profiles.npz``, traces of a measuring machine as CSV, or profiles."""
@@ -74,10 +75,11 @@ def as_measured(design: Design, wear: Sequence[Measured]) -> list[tuple[WornGear
 
 
 def in_same_slices(pinion: ToothProfiles, gear: ToothProfiles) -> ToothProfiles:
-    """The pinion in the sections of whichever of two measured spur gears has more: contact is looked for in the pinion's."""
+    """The pinion of a spur pair in the sections of whichever gear has more: contact is looked for in the pinion's."""
     if pinion.gear.twist != 0.0 or len(pinion.z) >= len(gear.z):
         return pinion
-    return replace(pinion, z=gear.z, half_angle=pinion.at_heights(gear.z))
+    z = on_face_of(pinion.gear, gear.z, gear.gear)
+    return replace(pinion, z=z, half_angle=pinion.at_heights(z))
 
 
 def uniform_loss(

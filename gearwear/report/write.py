@@ -147,8 +147,8 @@ def _contact_share(pair: PairResult, part: str) -> Floats:
     low, high = sorted((gear.form_roll, np.inf if gear.orientation > 0 else gear.tip_roll))
     inside = (pattern.roll_edges[1:] > low) & (pattern.roll_edges[:-1] < high)
     share = pattern.share[..., inside][..., :: gear.orientation]  # root to tip
-    if gear.twist != 0.0:
-        share = _on_even_heights(share, pattern.z - 0.5 * pair.contact.driver.face_width, gear.face_width)
+    if gear.twist != 0.0 or pair.contact.driver.face_width != pair.contact.driven.face_width:
+        share = _on_even_heights(share, pattern.z - 0.5 * gear.face_width, gear.face_width)
     of_sides = np.full((len(share), 2, *share.shape[1:]), np.nan)
     of_sides[:, pair.drive_side.index] = share
     return of_sides

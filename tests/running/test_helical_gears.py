@@ -51,8 +51,9 @@ def test_a_gap_the_other_way_is_no_mirror_image_and_the_other_side_of_the_other_
 
 
 def test_what_meets_no_mate_is_not_worn():
-    """A pinion 24 mm wide on a mate of 16: mid-faces of helical gears stand at one height, ends z = 0 of spur gears."""
-    for beta, met in ((20.0, [0.0, 1.0, 1.0, 1.0, 1.0, 0.0]), (0.0, [1.0, 1.0, 1.0, 1.0, 0.0, 0.0])):
+    """A pinion 24 mm wide on a mate of 16: mid-faces stand at one height, of spur gears too."""
+    met = [0.0, 1.0, 1.0, 1.0, 1.0, 0.0]
+    for beta in (20.0, 0.0):
         one, two = (Gear.from_spec(GearSpec(n, z, 2.5, b, helix_angle=w * math.radians(beta))) for n, z, b, w in (("p", 17, 24.0, 1), ("g", 31, 16.0, -1)))  # fmt: skip
         place = replace(map_of(ran()), gear=one)
         for slices in (1, 6):

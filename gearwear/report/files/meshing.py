@@ -51,7 +51,7 @@ def _write_curves(path: Path, study: PairStudy) -> None:
     )  # fmt: skip
     positions = zip(
         np.degrees(contact.rotation - contact.rotation[0]), contact.transmission_error_um, contact.backlash,
-        np.degrees(contact.angular_backlash_driver), contact.driver_tooth + 1, contact.driven_tooth + 1, contact.z,
+        np.degrees(contact.angular_backlash_driver), contact.driver_tooth + 1, contact.driven_tooth + 1, study.heights,
         contact.driver_radius, contact.driven_radius, strict=True,
     )  # fmt: skip
     rows = (
