@@ -113,13 +113,15 @@ def _law_of_traces(study: PairStudy, wear: Sequence[Path]) -> WearStudy | None:
     traced = next((at for at, path in enumerate(wear) if path.suffix.lower() == ".csv"), None)
     if traced is None:
         return None
+    from gearwear.meshing.study import facing
     from gearwear.wear_law.from_traces import study_traces
 
     worn = study.worn if traced == 0 else study.worn_mate
     assert worn is not None
     mate = study.design.mate_of(str(worn.part))
     assert mate is not None
-    return study_traces(study.measured[traced], mate, study.exact.centre_distance, study.drive_side)
+    profiles = study.measured[traced]
+    return study_traces(profiles, mate, study.exact.centre_distance, facing(profiles.gear, study.drive_side))
 
 
 def _under_load(study: PairStudy, torque: float | None) -> LoadedStudy | None:

@@ -264,6 +264,11 @@ class WearFit(Card):
         """One line for a report. It names what the profile is consistent with, never a mechanism."""
         if self.level_free:
             share, std = self.explained_variation
+            if not np.isfinite(share):
+                return (
+                    "how the measured depth varies along the profile does not stand out from its errors: nothing for a law to explain; "
+                    "its mean is from the machine's own zero and tells nothing"
+                )
             return (
                 f"the curve follows {_percent(share, std)} of how the measured depth varies along the profile (load sharing: {self.sharing}); "
                 f"its mean is from the machine's own zero and tells nothing{self._coefficient_words}"

@@ -39,7 +39,7 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
     centre_distance : float
         mm.
     side : Side
-        The flanks that carry.
+        The flanks of this gear that carry.
 
     Returns
     -------

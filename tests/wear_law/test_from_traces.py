@@ -123,3 +123,66 @@ def test_sliding_wear_of_a_ring_comes_back(tmp_path, helix_angle):
     assert study.why_not == ""
     value, std = study.fits[0].coefficients[0], np.sqrt(study.fits[0].covariance[0, 0])
     assert 1e3 * value == pytest.approx(8.0, abs=4.0 * 1e3 * std) and 1e3 * std < 0.4
+
+
+RING = """
+[pinion]
+teeth = 18
+module = 2.5
+face_width = 14.0
+addendum = 0.8
+
+[gear]
+teeth = 54
+module = 2.5
+face_width = 14.0
+addendum = 0.7
+internal = true
+fillet_radius = 0.5
+rim_diameter = 160.0
+
+[pair]
+"""
+
+
+def test_the_command_fits_the_flanks_of_a_ring_that_face_the_pinions(tmp_path):
+    """Left flanks of the pinion carry on right ones of its ring: 20 |K| µm off these, with K = 1 − z2 / z1 (L − T) / L of the ring's flank."""
+    (tmp_path / "ring.toml").write_text(RING)
+    design = gw.read_design(tmp_path / "ring.toml")
+    gear, mate = design.gears["gear"], design.gears["pinion"]
+    line = (gear.reference_radius - mate.reference_radius) * np.sin(gear.transverse_pressure_angle)
+    rng = np.random.default_rng(2)
+    rows = ["part,kind,tooth,flank,roll_mm,z_mm,deviation_um"]
+    for tooth in range(1, 9):
+        for side, amount in (("left", 0.0), ("right", 20.0)):
+            for foot in np.linspace(gear.tip_roll + 0.05, gear.form_roll - 0.05, 40):
+                depth = amount * abs(1.0 - 3.0 * (foot - line) / foot)
+                rows.append(f"gear,profile,{tooth},{side},{foot + 1e-3 * depth:.6f},7,{rng.normal(0.0, 0.1) - depth:.4f}")
+    (tmp_path / "t.csv").write_text("\n".join(rows) + "\n")
+    out = tmp_path / "out"
+    assert (
+        main(
+            [
+                str(tmp_path / "ring.toml"),
+                "--wear",
+                str(tmp_path / "t.csv"),
+                "--cycle",
+                "revolution",
+                "--quiet",
+                "--out",
+                str(out),
+            ]
+        )
+        == 0
+    )
+    told = json.loads((out / "meshing.json").read_text())
+    law = told["wear_law"]
+    assert told["contact"]["drive_flank"] == "left" and law["flank"] == "right" and law["fitted"]
+    found = law["terms"]["sliding"]["coefficient_um"]
+    assert found["value"] == pytest.approx(20.0, abs=4.0 * found["std"]) and found["std"] < 0.5
+
+
+def test_traces_of_no_shape_say_that_there_is_nothing_to_explain(tmp_path):
+    _, profiles = read_traces(_write(tmp_path / "t.csv", 0.0, a=0.0), DESIGN)
+    study = study_traces(profiles, DESIGN.gears["gear"], DESIGN.centre_distance, gw.Side.LEFT)
+    assert study.fits[0].words.startswith("how the measured depth varies along the profile does not stand out from its errors")
