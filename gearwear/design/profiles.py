@@ -14,6 +14,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
+from gearwear.errors import InputError
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,11 @@ class ToothProfiles:
         return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)
 
     def thickness(self, radius: float) -> Floats:
-        """Tooth thickness r (ψ_left + ψ_right) at `radius`, mm of arc; (teeth, n_z)."""
+        """Tooth thickness r (ψ_left + ψ_right) at `radius`, mm of arc; (teeth, n_z). InputError beyond the radii that are known."""
+        if not self.radius[0] <= radius <= self.radius[-1]:
+            raise InputError(
+                f"radius {radius:g} mm: the profiles are known from {self.radius[0]:.4f} to {self.radius[-1]:.4f} mm, and one of these would be right"
+            )
         whole = self.half_angle.sum(axis=1)
         at = np.apply_along_axis(lambda psi: np.interp(radius, self.radius, psi), -1, whole)
         return np.asarray(radius * at, dtype=np.float64)

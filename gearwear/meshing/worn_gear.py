@@ -35,7 +35,8 @@ class WornGear:
     source : str
         The file, or what was assumed, in words.
     loss : float
-        Greatest loss of tooth thickness, mm of arc at the reference circle.
+        Greatest loss of tooth thickness from what is drawn, mm of arc at the reference circle; turned there from the flank's nearest end where
+        that circle lies off the flank.
     tooth : int or None
         The tooth that has it, counted from 0; None where none has, or all that are worn have it.
     z : float or None
@@ -122,10 +123,18 @@ def _read(design: Design, wear: Measured) -> tuple[WornGear, ToothProfiles]:
         reader = read_traces if Path(wear).suffix.lower() == ".csv" else read_profiles
         part, profiles = reader(Path(wear), design)
         source = str(wear)
-    gear = profiles.gear
-    lost = gear.tooth_thickness - profiles.thickness(gear.reference_radius)
+    lost = _lost_thickness(profiles)
     words, greatest = f"{part} as measured, {source}", float(lost.max())
     if greatest <= 0.0:
         return WornGear(part, words, 0.0), profiles
     tooth, slice_ = np.unravel_index(int(lost.argmax()), lost.shape)
     return WornGear(part, words, greatest, int(tooth), float(profiles.z[slice_])), profiles
+
+
+def _lost_thickness(profiles: ToothProfiles) -> Floats:
+    """(teeth, n_z) what teeth are thinner than drawn in each section, mm of arc at the reference circle."""
+    gear, known = profiles.gear, profiles.radius
+    low, high = sorted((gear.form_radius, gear.flank_end_radius))
+    radius = float(np.clip(gear.reference_radius, max(low, known[0]), min(high, known[-1])))
+    drawn = replace(profiles, half_angle=gear.half_angles(known, profiles.z)[None])  # between the same radii
+    return (drawn.thickness(radius) - profiles.thickness(radius)) * (gear.reference_radius / radius)

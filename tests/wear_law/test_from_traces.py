@@ -145,8 +145,9 @@ rim_diameter = 160.0
 """
 
 
-def test_the_command_fits_the_flanks_of_a_ring_that_face_the_pinions(tmp_path):
+def test_the_command_fits_the_flanks_of_a_ring_that_face_the_pinions(tmp_path, monkeypatch):
     """Left flanks of the pinion carry on right ones of its ring: 20 |K| µm off these, with K = 1 − z2 / z1 (L − T) / L of the ring's flank."""
+    monkeypatch.setattr("gearwear.meshing.study.POSITIONS", 4)
     (tmp_path / "ring.toml").write_text(RING)
     design = gw.read_design(tmp_path / "ring.toml")
     gear, mate = design.gears["gear"], design.gears["pinion"]
