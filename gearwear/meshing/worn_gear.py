@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.design.files.profiles import read_profiles
 from gearwear.design.files.traces import read_traces
 from gearwear.design.gear import Gear

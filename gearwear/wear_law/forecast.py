@@ -63,7 +63,7 @@ class WearForecast(Card):
     depth : Band
         (m, n) depth along the flank.
     greatest_depth, thickness_loss, backlash_increase : Band
-        (m,) see `forecast_wear`.
+        (m,) see `forecast_wear`; the thickness nan where the reference circle lies off the path of contact.
     models : int
         Models that the band holds: of load sharing, those the profile cannot tell apart; or runs.
     cycles_run : float
@@ -95,7 +95,9 @@ class WearForecast(Card):
         rows = []
         for i, cycles in enumerate(self.cycles):
             text = ", ".join(
-                f"{name} {1e3 * b.value[i]:.1f} µm ({1e3 * b.low[i]:.1f} … {1e3 * b.high[i]:.1f})" for b, name in bands
+                f"{name} {1e3 * b.value[i]:.1f} µm ({1e3 * b.low[i]:.1f} … {1e3 * b.high[i]:.1f})"
+                for b, name in bands
+                if math.isfinite(b.value[i])
             )
             rows.append((f"{cycles:.3g} cycles", text + ("; beyond twice the cycles run" if self.far[i] else "")))
         return few(rows)
@@ -132,7 +134,7 @@ def forecast_wear(
     cycles : (m,) float
         Cycles since new for which to forecast, not below `cycles_run`.
     radius : float or None
-        Where the loss of thickness is asked, mm; None: the reference circle.
+        Where the loss of thickness is asked, mm; None: the reference circle, and nan where that lies off the path of contact.
     confidence : float
         Of the band, above 0 and below 1.
 
@@ -143,7 +145,8 @@ def forecast_wear(
     Raises
     ------
     InputError
-        If there is no fit, the confidence is none, the cycles are not positive or lie before now, or the radius lies off the path of contact.
+        If there is no fit, the confidence is none, the cycles are not positive or lie before now, or a radius that is given lies off the path of
+        contact.
 
     Notes
     -----
@@ -169,7 +172,7 @@ def forecast_wear(
     if not ((ahead >= -1e-12) & np.isfinite(ahead)).all():
         raise InputError(f"cycles {float(np.min(asked)):g}: must not be below the cycles run, {cycles_run:g}")
     states = [FlankState.of(fit) for fit in fits]
-    measures = [measured_by(states[0], quantity, radius) for quantity in ("depth", "thickness", "backlash")]
+    measures = [forecast_by(states[0], quantity, radius) for quantity in ("depth", "thickness", "backlash")]
     value = np.array([states[0].depth(g, 0.0) for g in ahead])
     sides = [[np.array([s.depth(g, sign * s.reach(confidence)) for g in ahead]) for s in states] for sign in (-1.0, 1.0)]
     low, high = np.min(sides[0], axis=0), np.max(sides[1], axis=0)
@@ -217,7 +220,7 @@ def cycles_left(
     Raises
     ------
     InputError
-        If there is no fit, the limit or the cycles run are not positive, or the confidence is none.
+        If there is no fit, the limit or the cycles run are not positive, the confidence is none, or a thickness is asked for off the path of contact.
 
     Examples
     --------
@@ -357,7 +360,7 @@ def measured_by(state: FlankState, quantity: Quantity, radius: float | None) -> 
     if quantity == "thickness":
         r = gear.reference_radius if radius is None else radius
         at = math.sqrt(max(r * r - gear.base_radius**2, 0.0))
-        if not roll[0] <= at <= roll[-1]:
+        if not _on_path(state, at):
             raise InputError(
                 f"radius {r:g} mm (L = {at:.3f} mm): the path of contact runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
             )
@@ -370,6 +373,18 @@ def measured_by(state: FlankState, quantity: Quantity, radius: float | None) -> 
     else:
         touching[:, ~touching.any(axis=0)] = True
     return lambda depth: float(np.where(touching, np.interp(pairs, roll, depth), np.inf).min(axis=0).max())
+
+
+def forecast_by(state: FlankState, quantity: Quantity, radius: float | None) -> Callable[[Floats], float]:
+    """As `measured_by`; nan for a thickness at the reference circle where no radius is asked for and that circle lies off the path."""
+    gear = state.fit.gear
+    if quantity == "thickness" and radius is None and not _on_path(state, gear.reference_roll):
+        return lambda depth: math.nan
+    return measured_by(state, quantity, radius)
+
+
+def _on_path(state: FlankState, roll: float) -> bool:
+    return bool(state.roll[0] <= roll <= state.roll[-1])
 
 
 def _beside(path: PathOfContact) -> Floats:

@@ -23,7 +23,7 @@ from gearwear.loaded.wearing import WearMember, run_wear, run_wear_ensemble
 from gearwear.meshing.slices import common_width
 from gearwear.threads import on_one_thread
 from gearwear.wear_law.fit import WearFit, check_confidence
-from gearwear.wear_law.forecast import Band, FlankState, Quantity, WearForecast, measured_by
+from gearwear.wear_law.forecast import Band, FlankState, Quantity, WearForecast, forecast_by
 
 MATE_RATES = (0.0, 0.5, 1.5)
 """Wear coefficients of the mate over that of the gear that are tried: hard, as the gear about, softer."""
@@ -260,7 +260,7 @@ def forecast_by_running(
         return Band(value, low, high)
 
     def band_of(quantity: Quantity) -> Band:
-        of = measured_by(state, quantity, None)
+        of = forecast_by(state, quantity, None)
         return band(np.array([[of(row) for row in rows] for rows in depth]))
 
     return WearForecast(

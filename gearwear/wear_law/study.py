@@ -40,6 +40,8 @@ PLACES = 121
 LEAST_EXPLAINED = 0.5
 """Least share of the mean square depth that the law must explain for a forecast."""
 
+OFF_PATH_NOTE = "nothing is forecast of the thickness: the reference circle lies off the path of contact"
+
 
 @dataclass(frozen=True, slots=True)
 class Ahead:
@@ -319,10 +321,12 @@ def _forecast(study: WearStudy, ahead: Ahead) -> WearStudy:
         )
     try:
         forecast = forecast_wear(study.fits, ahead.cycles_run, np.array([ahead.cycles_run, *ahead.cycles]))
-        left = tuple(_left(study.fits, ahead.cycles_run, quantity, limit) for quantity, limit in ahead.limits)
+        thick = math.isfinite(forecast.thickness_loss.value[0])
+        asked = [(quantity, limit) for quantity, limit in ahead.limits if thick or quantity != "thickness"]
+        left = tuple(_left(study.fits, ahead.cycles_run, quantity, limit) for quantity, limit in asked)
     except InputError as error:
         return replace(study, why_not=f"no forecast: {error}")
-    return replace(study, forecast=forecast, left=left)
+    return replace(study, forecast=forecast, left=left, note=study.note if thick else OFF_PATH_NOTE)
 
 
 def _left(fits: tuple[WearFit, ...], cycles_run: float, quantity: Quantity, limit: float) -> CyclesToLimit:

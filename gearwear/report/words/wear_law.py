@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from gearwear.design.quantity import SPACE, counted, listed, number, sentence, significant
+from gearwear.design.quantity import MISSING, SPACE, counted, listed, number, sentence, significant
 from gearwear.wear.regions import WearRegion
 from gearwear.wear_law.across import across_words
 from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, Band
@@ -140,6 +140,8 @@ def forecast_rows(study: WearStudy) -> list[tuple[str, ...]]:
 
 
 def _band(band: Band, i: int, factor: float, digits: int) -> str:
+    if not math.isfinite(band.value[i]):
+        return MISSING
     value, low, high = (number(factor * float(part[i]), digits) for part in (band.value, band.low, band.high))
     return f"{value} ({low} … {high})"
 
