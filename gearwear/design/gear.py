@@ -402,20 +402,21 @@ class Gear:
         Parameters
         ----------
         radius : (n,) float
-            mm, between root and tip circle (the involute is continued beyond its end).
+            mm, between root and tip circle (the involute is continued beyond its end; beyond the root circle it stays as it is there).
 
         Returns
         -------
         (n,) float
             rad, from the tooth's centre line.
         """
-        r = np.asarray(radius, dtype=np.float64)
-        psi = self.base_half_angle - self.orientation * involute_at_roll(self.roll_length(r), self.base_radius)
-        below = self.orientation * (r - self.form_radius) < 0.0
-        if below.any():
-            _, angle = self.root_curve.polar(self.fillet_phi(np.where(below, r, self.form_radius)))
-            psi = np.where(below, 0.5 * self.pitch_angle - angle, psi)
-        return np.asarray(psi, dtype=np.float64)
+        given = np.asarray(radius, dtype=np.float64)
+        r, orientation = np.atleast_1d(given), self.orientation
+        psi = self.base_half_angle - orientation * involute_at_roll(self.roll_length(r), self.base_radius)
+        below = orientation * (r - self.form_radius) < 0.0
+        if below.any():  # Newton steps only where there is fillet
+            deepest = orientation * np.maximum(orientation * r[below], orientation * self.root_radius)
+            psi[below] = 0.5 * self.pitch_angle - self.root_curve.polar(self.fillet_phi(deepest))[1]
+        return np.asarray(psi.reshape(given.shape), dtype=np.float64)
 
     def roll_length(self, radius: ArrayLike) -> Floats:
         """L at radii in mm, 0 inside the base circle."""

@@ -143,28 +143,22 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         raise InputError(
             f"[pair] centre_distance = {centre:g} mm: must be above the {relation} of the base radii, {abs(bases):.4f} mm"
         )
-    # By ISO 21771 the radii of a ring and its centre distance are negative; so each formula is one.
-    signed = orientation * centre
-    for part, tip, root in (
-        ("pinion", pinion.tip_radius, orientation * gear.root_radius),
-        ("gear", orientation * gear.tip_radius, pinion.root_radius),
-    ):
-        clearance = signed - tip - root
+    for part, clearance in zip(("pinion", "gear"), tip_clearances(pinion, gear, centre), strict=True):
         if clearance < 0.0:
-            bound = f"at most {-(tip + root):.4f} mm is possible" if g.internal else f"at least {tip + root:.4f} mm is needed"
+            limit = centre - orientation * clearance
+            bound = f"at most {limit:.4f} mm is possible" if g.internal else f"at least {limit:.4f} mm is needed"
             raise InputError(
                 f"[pair] centre_distance = {centre:g} mm: the {part}'s tip digs {-clearance:.4f} mm into its mate's root; {bound}"
             )
 
-    working = math.acos(bases / signed)
-    line = signed * math.sin(working)
-    play = _base_backlash(pinion, gear, working) / math.cos(working)
+    working = math.acos(abs(bases) / centre)
+    line = orientation * centre * math.sin(working)
+    play = base_backlash(pinion, gear, working) / math.cos(working)
     if play < -1e-9 * standard:
         raise InputError(
             f"[pair] centre_distance = {centre:g} mm: the teeth jam, backlash would be {play:.4f} mm; a {'smaller' if g.internal else 'larger'} centre distance, less profile_shift or more thinning is needed"
         )
-    start = max(pinion.form_roll, line - orientation * gear.tip_roll)
-    end = min(pinion.tip_roll, line - orientation * gear.form_roll)
+    start, end = path_ends(pinion, gear, line)
     if end <= start:
         raise InputError(
             f"[pair] centre_distance = {centre:g} mm: the gears do not reach each other, the path of contact is empty"
@@ -186,7 +180,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
             raise InputError(
                 f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {depth:.4f} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {root_remedy(member)} of the {part} would clear it"
             )
-        reached = member.orientation * (line - mate.orientation * mate.tip_roll)  # own roll that the mate's tip reaches
+        reached = reached_roll(member, mate, abs(line))
         past = -reached
         if past > 0.0:
             limit = math.hypot(mate.base_radius, line)
@@ -245,10 +239,36 @@ def overlap_ratio(pinion: Gear, gear: Gear) -> float:
     return width * abs(math.tan(pinion.base_helix_angle)) / pinion.base_pitch
 
 
-def _base_backlash(pinion: Gear, gear: Gear, working: float) -> float:
+def base_backlash(pinion: Gear, gear: Gear, working: float) -> float:
     """j_bt in mm, along the transverse base tangent: p_bt less both base thicknesses, 2 Σr_b inv α_w more (ISO 21771, written at the base circles)."""
-    thickness = pinion.base_thickness + gear.base_thickness
-    return pinion.base_pitch - thickness + 2.0 * base_radius_sum(pinion, gear) * involute_function(working)
+    return 2.0 * base_radius_sum(pinion, gear) * (involute_function(working) - tight_involute(pinion, gear))
+
+
+def tight_involute(pinion: Gear, gear: Gear) -> float:
+    """inv α_wt at which the backlash is zero; negative when the base circles meet before the teeth do."""
+    return (pinion.base_thickness + gear.base_thickness - pinion.base_pitch) / (2.0 * base_radius_sum(pinion, gear))
+
+
+def tip_clearances(pinion: Gear, gear: Gear, centre_distance: float) -> tuple[float, float]:
+    """Tip clearance in mm: pinion tip to gear root, gear tip to pinion root; negative where the tip digs in."""
+    orientation = pinion.orientation * gear.orientation  # radii and distance of a ring are negative, as in ISO 21771
+    centre, tip, root = (orientation * length for length in (centre_distance, gear.tip_radius, gear.root_radius))
+    return centre - pinion.tip_radius - root, centre - tip - pinion.root_radius
+
+
+def path_ends(pinion: Gear, gear: Gear, line: float) -> tuple[float, float]:
+    """Length of roll L_1, mm, at which the path of contact begins and ends on a line of action (mm, negative in a ring); no path where the end
+    is not beyond the start. Where a ring stands first the rolls are its own."""
+    orientation = pinion.orientation * gear.orientation
+    tip, form = (line - orientation * roll for roll in (gear.tip_roll, gear.form_roll))  # the mate's, on the pinion
+    if pinion.orientation > 0:
+        return max(pinion.form_roll, tip), min(pinion.tip_roll, form)
+    return max(pinion.tip_roll, form), min(pinion.form_roll, tip)
+
+
+def reached_roll(member: Gear, mate: Gear, line: float) -> float:
+    """Own length of roll that the mate's tip reaches, mm, on a line of action of this length; below 0 it passes the interference point."""
+    return mate.orientation * (line - member.orientation * mate.tip_roll)
 
 
 def tip_penetration(member: Gear, mate: Gear, centre_distance: float) -> float:

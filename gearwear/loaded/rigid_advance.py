@@ -13,7 +13,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
+from gearwear.meshing.backlash import transverse_backlash
 from gearwear.meshing.passes import Cycle, Passes, pitches
 from gearwear.meshing.path import path_of_contact
 from gearwear.meshing.slices import FaceParts
@@ -168,8 +168,7 @@ def _on_path(run: Passes, advance: Floats, passes: int) -> Floats:
     gear, mate = run.driver.gear, run.driven.gear
     path = path_of_contact(gear, mate, run.centre)
     angle = ((run.columns() + np.arange(run.n)[:, None] / run.n) * gear.pitch_angle)[..., None] + run.side * run.phase
-    # On the line of action a flank whose tooth stands θ past the line of centres is touched at L = r_b (θ + ψ_b + α_w).
-    roll = gear.base_radius * (angle + gear.base_half_angle + working_pressure_angle(gear, mate, run.centre))
+    roll = run.roll_at(angle)
     off = np.tile((roll < path.start_pinion) | (roll > path.end_pinion), (passes, 1, 1))
     on_path = np.where(off, -np.inf, advance)
     reached = np.isfinite(on_path.max(axis=(1, 2), keepdims=True))

@@ -19,7 +19,7 @@ from typing import Literal, get_args
 from gearwear.design.gear import Gear
 from gearwear.design.given import check_choice
 from gearwear.design.involute import inverse_involute, involute_function
-from gearwear.design.pair import base_radius_sum, opposite_hands, same_base_pitch
+from gearwear.design.pair import base_backlash, base_radius_sum, opposite_hands, same_base_pitch, tight_involute
 from gearwear.design.rack import bisect
 from gearwear.errors import InputError
 
@@ -115,7 +115,7 @@ def transverse_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> flo
         If the gears do not mesh (`check_mesh`) or the base circles meet.
     """
     alpha = working_pressure_angle(pinion, gear, centre_distance)
-    return 2.0 * sum_of_base_radii(pinion, gear) * (involute_function(alpha) - _tight_involute(pinion, gear))
+    return base_backlash(pinion, gear, alpha)
 
 
 def backlash(pinion: Gear, gear: Gear, centre_distance: float) -> Backlash:
@@ -214,7 +214,7 @@ def centre_distance_for_backlash(
         raise InputError(f"backlash = {backlash:g} mm: must be 0 or more")
     bases = sum_of_base_radii(pinion, gear)
     cos_reference = math.cos(pinion.transverse_pressure_angle)
-    tight = _tight_involute(pinion, gear) - thickness_loss * cos_reference / (2.0 * bases)
+    tight = tight_involute(pinion, gear) - thickness_loss * cos_reference / (2.0 * bases)
     along_action = {"reference": cos_reference, "operating": 1.0, "normal": 1.0 / pinion.base_helix_cosine}[kind]
     value = tight + backlash * along_action / (2.0 * bases)
     if value < 0.0:
@@ -247,11 +247,6 @@ def sum_of_base_radii(pinion: Gear, gear: Gear) -> float:
     """r_b1 + r_b2 in mm, that of a ring negative; refuses gears that do not mesh at any centre distance."""
     check_mesh(pinion, gear)
     return base_radius_sum(pinion, gear)
-
-
-def _tight_involute(pinion: Gear, gear: Gear) -> float:
-    """inv α_wt at which the backlash is zero; negative when the base circles meet before the teeth do."""
-    return (pinion.base_thickness + gear.base_thickness - pinion.base_pitch) / (2.0 * sum_of_base_radii(pinion, gear))
 
 
 def _operating_angle(start: float, tight: float, backlash: float, bases: float) -> float:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
+from gearwear.design.pair import tip_clearances
 from gearwear.design.twist import Toothing, refuse
 from gearwear.meshing.backlash import (
     Backlash,
@@ -17,11 +18,7 @@ from gearwear.meshing.backlash import (
     operating_pitch_radii,
     working_pressure_angle,
 )
-from gearwear.meshing.clearance import (
-    Interference,
-    interference,
-    tip_clearances,
-)
+from gearwear.meshing.clearance import Interference, interference
 from gearwear.meshing.path import PathOfContact, path_of_contact
 
 

@@ -15,7 +15,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
+from gearwear.meshing.backlash import transverse_backlash
 from gearwear.meshing.passes import Cycle, Passes, pitches
 from gearwear.meshing.path import path_of_contact, radius_at_roll
 from gearwear.meshing.slices import Slices
@@ -76,7 +76,6 @@ def linear_contact(
     gear, mate, side = driver.gear, driven.gear, Side.of(drive_side)
     refuse(gear, "the linear contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
     path = path_of_contact(gear, mate, centre_distance)
-    working = working_pressure_angle(gear, mate, centre_distance)
     cut = Slices.of(driver, driven).cut(driver, driven)
     refuse(gear, "the linear contact", Toothing.DOUBLE_HELICAL)
     run = Passes.of(*cut, centre_distance, side, positions_per_pitch, start_tooth)
@@ -89,7 +88,7 @@ def linear_contact(
         greatest = np.full(len(passing), -np.inf)
         for column in run.columns():
             angle = ((flank * side) * (column + place) * gear.pitch_angle)[:, None] + flank * run.phase
-            roll = gear.base_radius * (angle + gear.base_half_angle + working)
+            roll = run.roll_at(angle)
             inside = (roll >= path.start_pinion) & (roll <= path.end_pinion)
             touches = np.flatnonzero(inside.any(axis=1))
             if not len(touches):

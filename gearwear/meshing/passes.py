@@ -16,6 +16,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import turn_at
 from gearwear.errors import InputError
+from gearwear.meshing.backlash import working_pressure_angle
 from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs, place_among, tip_corner
 
 Cycle = Literal["pitch", "revolution", "driven", "hunting"]
@@ -114,6 +115,13 @@ class Passes:
         gear = driver.gear
         half = np.asarray((driver.z > 0.5 * gear.face_width) & (gear.spec.gap > 0.0), dtype=np.int64)
         return cls(driver, driven, turn_at(gear, driver.z), half, centre, side, n, start)
+
+    def roll_at(self, angle: Floats) -> Floats:
+        """Length of roll, mm, at which a flank of the driver is touched on the line of action: ``L = r_b (θ + ψ_b + α_w)``, its tooth θ rad past
+        the line of centres in the sense in which it faces."""
+        gear = self.driver.gear
+        working = working_pressure_angle(gear, self.driven.gear, self.centre)
+        return np.asarray(gear.base_radius * (angle + gear.base_half_angle + working), dtype=np.float64)
 
     def columns(self) -> Ints:
         """Teeth, counted from the line of centres, that can reach into the driven tip circle with either flank."""

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
-from gearwear.design.pair import overlap_ratio
+from gearwear.design.pair import overlap_ratio, path_ends, reached_roll
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import operating_pitch_radii, working_pressure_angle
 
@@ -169,11 +169,7 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
     alpha, orientation = working_pressure_angle(pinion, gear, centre_distance), pinion.orientation * gear.orientation
     line = gear.orientation * centre_distance * math.sin(alpha)
     pitch_radius, mate_pitch_radius = operating_pitch_radii(pinion, gear, centre_distance)
-    tip, form = (line - orientation * roll for roll in (gear.tip_roll, gear.form_roll))  # the mate's, on the pinion
-    if pinion.orientation > 0:
-        start, end = max(pinion.form_roll, tip), min(pinion.tip_roll, form)
-    else:
-        start, end = max(pinion.tip_roll, form), min(pinion.form_roll, tip)
+    start, end = path_ends(pinion, gear, line)
     if end <= start:
         raise InputError(
             f"centre distance = {centre_distance:g} mm: the gears do not reach each other, the path of contact is empty"
@@ -195,7 +191,7 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
 
 
 def _limit(gear: Gear, mate: Gear, line: float) -> PathLimit:
-    reached = mate.orientation * (abs(line) - gear.orientation * mate.tip_roll)
+    reached = reached_roll(gear, mate, abs(line))
     return "form circle" if gear.orientation * (gear.form_roll - reached) > 0.0 else "mate's tip"
 
 

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
-from gearwear.design.involute import involute_at_roll
 from gearwear.design.profiles import ToothProfiles
 
 Index = NDArray[np.intp]
@@ -39,18 +38,6 @@ HALVINGS = 14
 
 _CELLS = 16384
 """Array elements worked on at a time: small enough to stay in the cache."""
-
-
-def nominal_half_angle(gear: Gear, radius: Floats) -> Floats:
-    """ψ(r) of the design, as `Gear.half_angle`, with the fillet's Newton steps only where there is fillet."""
-    orientation = gear.orientation
-    psi = gear.base_half_angle - orientation * involute_at_roll(gear.roll_length(radius), gear.base_radius)
-    below = orientation * (radius - gear.form_radius) < 0.0
-    if below.any():
-        root = gear.root_curve
-        deepest = orientation * np.maximum(orientation * radius[below], orientation * gear.root_radius)
-        psi[below] = 0.5 * gear.pitch_angle - root.polar(gear.fillet_phi(deepest))[1]
-    return psi
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +66,7 @@ class Flanks:
 
     def half_angle(self, row: Index, radius: Floats) -> Floats:
         """ψ in rad at one radius (mm) per row number."""
-        return nominal_half_angle(self.gear, radius) + self.excess_at(row, radius)
+        return self.gear.half_angle(radius) + self.excess_at(row, radius)
 
     def sampled(self, radius: Floats) -> Floats:
         """ψ in rad of every row on common radii: (rows, len(radius))."""
@@ -87,7 +74,7 @@ class Flanks:
         # `take` keeps rows contiguous in memory; a fancy index would not, and each look would copy the table.
         psi = self.excess.take(knot, axis=1) * (1.0 - part)
         psi += self.excess.take(knot + 1, axis=1) * part
-        psi += nominal_half_angle(self.gear, radius)
+        psi += self.gear.half_angle(radius)
         return psi
 
 

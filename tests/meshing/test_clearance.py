@@ -7,11 +7,11 @@ import pytest
 from scipy.optimize import brentq
 
 from gearwear.design import Gear, GearSpec
+from gearwear.design.pair import tip_clearances
 from gearwear.meshing.clearance import (
     bottoming_centre_distance,
     interference,
     interference_free_centre_distance,
-    tip_clearances,
     tip_penetration,
 )
 

@@ -9,7 +9,7 @@ import pytest
 
 from gearwear.design import Gear, GearSpec, PairSpec, parse_design
 from gearwear.design.files.profiles import write_profiles
-from gearwear.design.pair import check_pair, tip_penetration
+from gearwear.design.pair import check_pair, tip_clearances, tip_penetration
 from gearwear.design.profiles import nominal_profiles
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, TIP, flank_points, locate
@@ -22,7 +22,7 @@ from gearwear.meshing.backlash import (
     working_pressure_angle,
     zero_backlash_centre_distance,
 )
-from gearwear.meshing.clearance import bottoming_centre_distance, interference, interference_free_centre_distance, tip_clearances
+from gearwear.meshing.clearance import bottoming_centre_distance, interference, interference_free_centre_distance
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.linear import linear_contact
 from gearwear.meshing.path import path_of_contact, sliding

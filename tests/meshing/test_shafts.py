@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from gearwear.design import Gear, GearSpec
+from gearwear.design.pair import tip_clearances
 from gearwear.design.profiles import nominal_profiles
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash, working_pressure_angle, zero_backlash_centre_distance
-from gearwear.meshing.clearance import interference, tip_clearances
+from gearwear.meshing.clearance import interference
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.shafts import shaft_movement, take_up, take_up_words

@@ -47,5 +47,5 @@ def test_a_loss_of_the_flank_is_found_where_the_reference_circle_lies_within_the
 
 def test_a_thickness_beyond_what_is_known_is_refused():
     profiles = gw.nominal_profiles(pair(1.3, 40).gears["pinion"])
-    with pytest.raises(gw.InputError, match="radius 60 mm: the profiles are known from 60.15"):
+    with pytest.raises(gw.InputError, match=r"radius 60 mm: the profiles are known from 60\.15"):
         profiles.thickness(60.0)
