@@ -310,14 +310,24 @@ def as_dict(result: Results | Inspection | PairStudy) -> dict[str, Any]:
     -------
     dict
         What `report.json`, the key `inspection` of `inspection.json`, or `meshing.json` holds.
+
+    Raises
+    ------
+    InputError
+        If it is no result of these.
     """
+    from gearwear.comparison.results import Results
     from gearwear.report.records.comparison import document
     from gearwear.report.records.inspection import as_dict as inspection_record
     from gearwear.report.records.meshing import study_record
 
     if isinstance(result, Inspection):
         return inspection_record(result)
-    return study_record(result) if isinstance(result, PairStudy) else document(result)
+    if isinstance(result, PairStudy):
+        return study_record(result)
+    if not isinstance(result, Results):
+        raise InputError(f"result = {type(result).__name__}: one of compare, inspect or study_meshing would be right")
+    return document(result)
 
 
 def as_columns(inspection: Inspection, rows: Literal["findings", "flanks", "teeth"] = "flanks") -> dict[str, NDArray[Any]]:

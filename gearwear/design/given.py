@@ -1,9 +1,9 @@
-"""What a caller may give: one of a few words, a whole number."""
+"""What a caller may give: one of a few words, a whole number, a number."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from numbers import Integral
+from numbers import Integral, Real
 
 from gearwear.design.spec import shown
 from gearwear.errors import InputError
@@ -31,3 +31,14 @@ def check_whole(name: str, given: object, least: int | None = None) -> None:
     if not (isinstance(given, Integral) and not isinstance(given, bool) and (least is None or int(given) >= least)):
         bound = "" if least is None else f" from {least} up"
         raise InputError(f"{name} = {shown(given)}: a whole number{bound} would be right")
+
+
+def check_number(name: str, given: object, unit: str) -> None:
+    """Refuse what is no number, such as its text; how great it may be is for others to say.
+
+    >>> check_number("centre_distance", "114.3", "mm")
+    Traceback (most recent call last):
+    gearwear.errors.InputError: centre_distance = '114.3': a number, in mm, would be right
+    """
+    if not isinstance(given, Real) or isinstance(given, bool):
+        raise InputError(f"{name} = {shown(given)}: a number{f', in {unit},' if unit else ''} would be right")

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gearwear.design.given import check_number
 from gearwear.errors import InputError
+
+UNITS = {
+    "torque": "N mm",
+    "load_per_width": "N/mm",
+    "speed_rpm": "1/min",
+    "elastic_modulus": "MPa",
+    "poisson": "",
+    "misalignment": "mm",
+}
+"""Of what is said about a load."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +54,9 @@ class LoadSpec:
         if (self.torque is None) == (self.load_per_width is None):
             how_many = "both given" if self.torque is not None else "both missing"
             raise InputError(f"[load] torque_Nm and load_per_width_N_mm are {how_many}: one of them is needed")
+        for name, unit in UNITS.items():
+            if getattr(self, name) is not None:
+                check_number(name, getattr(self, name), unit)
         if self.torque is not None:
             _above("torque_Nm", 1e-3 * self.torque, 1e9)
         if self.load_per_width is not None:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.given import check_choice, check_whole
+from gearwear.design.given import check_choice, check_number, check_whole
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.errors import InputError
@@ -172,6 +172,10 @@ def loaded_variants(
         As `loaded_contact`.
     """
     side = Side.of(drive_side)
+    for name, given, unit in (
+        ("centre_distance", centre_distance, "mm"), ("force", force, "N"), ("misalignment", misalignment, "mm")
+    ):  # fmt: skip
+        check_number(name, given, unit)
     check_whole("positions_per_pitch", positions_per_pitch, 1)
     check_whole("slices", slices, 1)
     check_whole("start_tooth", start_tooth)

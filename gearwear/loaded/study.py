@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow, measured
-from gearwear.design.given import check_choice, check_whole
+from gearwear.design.given import check_choice, check_number, check_whole
 from gearwear.design.load import LoadSpec
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
@@ -203,6 +203,7 @@ def study_load(
         raise InputError(f"{design.source or 'the design'}: no load is stated; a table [load] with torque_Nm is needed")
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     centre = design.centre_distance if centre_distance is None else centre_distance
+    check_number("centre_distance", centre, "mm")
     if why := not_modelled(design):
         raise InputError(
             f"{design.source or 'the design'}: {why}; external gears, or the rigid contact alone (study_meshing), would be right"

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.given import check_choice, check_whole
+from gearwear.design.given import check_choice, check_number, check_whole
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
@@ -112,6 +112,7 @@ def mesh_contact(
     >>> [round(float(um), 3) + 0.0 for um in (result.transmission_error_um.min(), result.peak_to_peak_um)]
     [-100.0, 0.0]
     """
+    check_number("centre_distance", centre_distance, "mm")
     check_whole("positions_per_pitch", positions_per_pitch, 1)
     check_whole("start_tooth", start_tooth)
     check_choice("cycle", cycle, CYCLES)

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
+from gearwear.design.given import check_number
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.quantity import SPACE, number, sentence
@@ -30,7 +31,7 @@ from gearwear.meshing.worn_gear import Measured, WornGear, as_measured, each_mea
 from gearwear.threads import on_one_thread
 
 POSITIONS, PLACES = 34, 400
-"""Radii of a nominal profile; positions per pitch, as in compare; places on the path of contact."""
+"""Positions per pitch, as in compare; places on the path of contact."""
 ONE_SIDED = 0.5
 """Difference between the mean losses of a gear's two sides, as a share of the greatest of both gears, from which on it says which way the pair ran."""
 
@@ -46,7 +47,7 @@ class CentreDistances:
     bottoming : float
         A tip meets the root of its mate.
     interference_free : float
-        From here on no tip reaches below its mate's form circle.
+        From here on, with a ring up to here, neither tip passes its mate's interference point; one may still reach below a form circle.
     """
 
     zero_backlash: float | None
@@ -267,7 +268,7 @@ def study_meshing(
     wear: Measured | Sequence[Measured] | None = None,
     *,
     loss: float | None = None,
-    teeth: Sequence[int] | None = None,
+    teeth: int | Sequence[int] | None = None,
     part: str | None = None,
     centre_distance: float | None = None,
     drive: Side | str | None = None,
@@ -285,7 +286,7 @@ def study_meshing(
         (`gearwear.design.files.traces`), or profiles of either gear. Both have z = 0 at the same end; mid-faces are at one height.
     loss : float or None
         In place of `wear`, a uniform loss, mm along the normal, on flanks that carry.
-    teeth : sequence of int or None
+    teeth : int, sequence of int or None
         Teeth with the loss, **counted from 1**; None: all.
     part : {"pinion", "gear"} or None
         Which one has the loss; None: the pinion.
@@ -307,8 +308,8 @@ def study_meshing(
     Raises
     ------
     InputError
-        If the design has one gear only, the gears do not mesh at this distance, the loss is more than a tooth has, or what is asked
-        for contradicts itself.
+        If the design has one gear only, the gears do not mesh at this distance, the loss is more than a tooth has, what is given is no number
+        or no gear, or what is asked for contradicts itself.
 
     Examples
     --------
@@ -335,6 +336,7 @@ def study_meshing(
     if loss is None and (teeth is not None or part is not None):
         raise InputError(f"{'part' if teeth is None else 'teeth'} says what has the loss, which is not given")
     centre = design.centre_distance if centre_distance is None else centre_distance
+    check_number("centre_distance", centre, "mm")
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     if mate_tooth is not None and not is_tooth(mate_tooth, gear):
         raise InputError(f"mate tooth {mate_tooth}: the gear has teeth from 1 to {gear.teeth}, and one of them would be right")

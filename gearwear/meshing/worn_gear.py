@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from numbers import Integral
 from pathlib import Path
@@ -14,10 +14,12 @@ from gearwear.arrays import Floats
 from gearwear.design.files.profiles import read_profiles
 from gearwear.design.files.traces import read_traces
 from gearwear.design.gear import Gear
+from gearwear.design.given import check_number
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import teeth_words
 from gearwear.design.side import Side
+from gearwear.design.spec import shown
 from gearwear.errors import InputError
 from gearwear.meshing.slices import on_face_of
 
@@ -52,10 +54,14 @@ class WornGear:
 
 
 def each_measured(wear: Measured | Sequence[Measured] | None) -> tuple[Measured, ...]:
-    """What was given as measured: none, one, or both gears."""
+    """What was given as measured: none, one, or both gears; InputError for what is neither a path nor profiles."""
     if wear is None:
         return ()
-    return (wear,) if isinstance(wear, Path | str | ToothProfiles) else tuple(wear)
+    each = (wear,) if isinstance(wear, Path | str | ToothProfiles) or not isinstance(wear, Iterable) else tuple(wear)
+    for given in each:
+        if not isinstance(given, Path | str | ToothProfiles):
+            raise InputError(f"wear = {shown(given)}: a path or profiles, or one of either gear, would be right")
+    return each
 
 
 def as_measured(design: Design, wear: Sequence[Measured]) -> list[tuple[WornGear, ToothProfiles]]:
@@ -85,13 +91,15 @@ def in_same_slices(pinion: ToothProfiles, gear: ToothProfiles) -> ToothProfiles:
 
 
 def uniform_loss(
-    nominal: ToothProfiles, part: str, loss: float, teeth: Sequence[int] | None, side: Side
+    nominal: ToothProfiles, part: str, loss: float, teeth: int | Sequence[int] | None, side: Side
 ) -> tuple[WornGear, ToothProfiles]:
     """A uniform loss on some teeth, counted from 1, or on all where None is given, and the profiles with it."""
     gear = nominal.gear
+    check_number("loss", loss, "mm")
     if not 0.0 < loss < math.inf:
         raise InputError(f"loss {loss:g} mm: must be above 0")
-    asked = list(range(1, gear.teeth + 1) if teeth is None else teeth)
+    some = range(1, gear.teeth + 1) if teeth is None else teeth
+    asked = list(some) if isinstance(some, Iterable) else [some]
     if not asked or not all(is_tooth(tooth, gear) for tooth in asked):
         which = ", ".join(map(str, asked)) or "that are none"
         raise InputError(f"teeth {which}: the {part} has teeth from 1 to {gear.teeth}, and whole numbers of them would be right")
