@@ -158,7 +158,7 @@ MUTATIONS = [
         ("diagnose/untold.py", "raised[on] = columns[on] @ told - found[on]", "raised[on] = 0.0", "diagnose/test_untold.py"),
         ("diagnose/untold.py", "rms / (lever @ free) * free", "rms * free", "diagnose/test_untold.py"),
         ("diagnose/untold.py", "level_std[at], stds = np.linalg.norm(lever * scatter), scatter", "level_std[at], stds = rms, 0.0 * scatter", "diagnose/test_untold.py"),
-        ("diagnose/found.py", "return self.worn_sides if self.margin > rules().beyond_doubt", "return self.worn_sides if self.margin > 0.0", "diagnose/core/test_pooled.py"),
+        ("diagnose/worn_sides.py", "max(rules().close, rules().beyond_doubt * self.by_sides[taken])", "rules().close", "diagnose/core/test_worn_sides.py"),
         ("diagnose/few_cells.py", "is fit.cells.grid and kept.all()", "is fit.cells.grid", "diagnose/core/test_few_cells.py"),
         ("wear/made_apart.py", "FEWEST_FLANKS = 6", "FEWEST_FLANKS = 60", "wear/test_made_apart.py"),
         ("wear/made_apart.py", "MOST_SHARE = 0.9", "MOST_SHARE = 0.0", "wear/test_made_apart.py"),

@@ -86,8 +86,8 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     """
     scan = _Scan(measured, measured.first, measured.placed.located, worn=worn)
     look = scan.looked_at()
-    if look is not None and worn is None:
-        scan = replace(scan, worn=look[0].sure_sides)
+    if look is not None and look[0].sides_sure:
+        scan = replace(scan, worn=look[0].worn_sides)
     far = look is not None and is_far(*look)
     likeliest = look[0] if look is not None and far else scan.explained(look)
     again = None

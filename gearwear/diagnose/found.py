@@ -169,8 +169,8 @@ class Loop(Card):
         Between the sizes of different effects, the strongest first.
     worn_flanks : (teeth, 2) bool or None
         Single flanks that are worn all over, and were left out; None where none had to be.
-    margin : float
-        By how much other sides worn throughout would cost more; 0 where the costs did not decide.
+    sides_sure : bool
+        Whether it is beyond doubt which sides are worn throughout (`SideCosts.beyond_doubt`).
     untold : UntoldFlanks or None
         Flanks that are no datum where every tooth has amounts of its own; None where each is.
     """
@@ -197,18 +197,13 @@ class Loop(Card):
     others: tuple[Loop, ...] = ()
     correlations: tuple[Correlation, ...] = ()
     worn_flanks: Bools | None = None
-    margin: float = 0.0
+    sides_sure: bool = False
     untold: UntoldFlanks | None = None
 
     @property
     def undecided(self) -> tuple[frozenset[Side], ...]:
         """What else may be worn throughout as far as the scan tells."""
         return tuple(other.worn_sides for other in self.others)
-
-    @property
-    def sure_sides(self) -> frozenset[Side] | None:
-        """The sides worn throughout, none or some; None where the scan leaves a doubt of it, or single flanks are worn all over besides."""
-        return self.worn_sides if self.margin > rules().beyond_doubt and self.worn_flanks is None else None
 
     @property
     def as_made_std(self) -> tuple[float, float]:

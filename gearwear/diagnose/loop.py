@@ -141,7 +141,7 @@ def close_loop(
     named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
     if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
         named = tuple(_or_smoothing(effect) for effect in named)
-    return replace(taken, effects=named, others=others, margin=0.0 if refuted or worn is not None else costs.margin)
+    return replace(taken, effects=named, others=others, sides_sure=not refuted and not apart.any() and costs.beyond_doubt)
 
 
 def _or_smoothing(effect: FoundEffect) -> FoundEffect:

@@ -95,6 +95,13 @@ class Rules:
     known_flank: float = rule(
         0.5, "usual cells", "tuned, scans not recorded", "share of the cells of a flank from which on its level is known", off=0.0
     )
+    beyond_doubt: float = rule(
+        0.05,
+        "of the cost",
+        "tuned: 24 gears of 25 to 80 teeth, worn on no side, one or both",
+        "by how much other sides worn must cost more at a first look for that not to be asked again: it has chosen wrongly at 2 %",
+        off=math.inf,
+    )
     untold_flank: float = rule(
         0.1,
         "1",
@@ -344,11 +351,6 @@ class Rules:
     def close(self) -> float:
         """Cost within which two models cannot be told apart."""
         return self.errors**2
-
-    @property
-    def beyond_doubt(self) -> float:
-        """Cost beyond which an answer need not be asked for again: twice the errors of `close`."""
-        return (2.0 * self.errors) ** 2
 
 
 RULES = Rules()

@@ -67,10 +67,11 @@ class SideCosts:
         return NO_SIDE if len(cheapest) == len(Side) and as_likely else cheapest
 
     @property
-    def margin(self) -> float:
-        """By how much the next hypothesis costs more than the chosen one; below 0 where that is not the cheapest."""
+    def beyond_doubt(self) -> bool:
+        """Whether every other hypothesis costs so much more than the chosen one that more cells would say the same."""
         taken = self.chosen
-        return min((cost for worn, cost in self.by_sides.items() if worn != taken), default=math.inf) - self.by_sides[taken]
+        least = max(rules().close, rules().beyond_doubt * self.by_sides[taken])
+        return all(cost > self.by_sides[taken] + least for worn, cost in self.by_sides.items() if worn != taken)
 
     @property
     def not_excluded(self) -> tuple[frozenset[Side], ...]:

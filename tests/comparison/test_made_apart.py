@@ -21,7 +21,7 @@ def test_the_loss_of_a_tooth_is_known_as_well_as_how_it_was_made(tmp_path):
     files, scan = scan_file(tmp_path, "both", recipe.of_size(30_000), 3)
     results = compare(ALONE, files, inspection=False)
     assert len(results.measured.worn_sides) == 2
-    lost = {tooth: 0.0 for tooth in range(12)}
+    lost = dict.fromkeys(range(12), 0.0)
     for flank in scan.truth.flanks:
         lost[flank.tooth] += flank.thickness_loss_mm
     teeth = results.wear.thickness.teeth()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -188,10 +187,14 @@ def test_the_cheapest_is_taken_and_what_costs_no_more_than_chance_beyond_it_is_n
     assert SideCosts({NO_SIDE: 100.0}).chosen == NO_SIDE
 
 
-def test_how_far_the_next_answer_lies_behind():
-    assert SideCosts({NO_SIDE: 100.0, LEFT: 40.0, RIGHT: 48.0, BOTH: 50.0}).margin == 8.0
-    assert SideCosts({NO_SIDE: 100.0, LEFT: 99.0, BOTH: 95.0}, alike=96.0).margin < 0.0  # no side is taken, and two are cheaper
-    assert SideCosts({NO_SIDE: 100.0}).margin == math.inf
+def test_an_answer_is_beyond_doubt_where_all_others_cost_a_twentieth_more_and_more_than_chance():
+    assert SideCosts({NO_SIDE: 2000.0, LEFT: 1000.0, BOTH: 1051.0}).beyond_doubt
+    assert not SideCosts({NO_SIDE: 2000.0, LEFT: 1000.0, BOTH: 1049.0}).beyond_doubt
+    assert not SideCosts({NO_SIDE: 100.0, LEFT: 40.0, RIGHT: 48.0}).beyond_doubt
+    assert not SideCosts(
+        {NO_SIDE: 100.0, LEFT: 99.0, BOTH: 95.0}, alike=96.0
+    ).beyond_doubt  # no side is taken, and two are cheaper
+    assert SideCosts({NO_SIDE: 100.0}).beyond_doubt
 
 
 @pytest.mark.parametrize(("alike", "worn"), [(100.0, NO_SIDE), (103.9, NO_SIDE), (104.1, BOTH)])
