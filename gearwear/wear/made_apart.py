@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.special import chdtri
 
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
@@ -19,6 +20,8 @@ from gearwear.robust import median_scale
 from gearwear.wear.uncertainty import CellErrors
 from gearwear.wear.weights import SideWeights
 
+ALARM = 0.05
+"""Chance that what noise and texture scatter is taken for flanks made apart."""
 FEWEST_FLANKS = 6
 """Flanks from which on what they have apart is a scatter."""
 ABOUT = 1
@@ -70,7 +73,8 @@ def made_apart(known: CellErrors, sheets: SideMaps, grid: CellGrid, loop: Loop) 
         share = float(np.clip(at_pitch_point.mean() / min(mean.mean(), -1e-12), 0.0, MOST_SHARE))
         apart = (weights[0] - share * weights[1]) / (1.0 - share)
         made = (at_pitch_point - share * mean) / (1.0 - share)
-        chance = np.diag(known.covariance_of(SideWeights(where, apart, {}, {}))).mean()
-        scatter = min(median_scale(made)[1], median_scale(mean)[1])
-        result[side.index] = math.sqrt(max(scatter**2 - float(chance), 0.0))
+        chance = float(np.diag(known.covariance_of(SideWeights(where, apart, {}, {}))).mean())
+        scatter, free = min(median_scale(made)[1], median_scale(mean)[1]), len(where) - 1
+        if scatter**2 > chance * chdtri(free, ALARM) / free:
+            result[side.index] = math.sqrt(scatter**2 - chance)
     return result

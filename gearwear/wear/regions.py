@@ -8,7 +8,7 @@ region and a rim round it: signed sums are unbiased, one-sided ones collect nois
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import ndimage
@@ -21,6 +21,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, rim
 from gearwear.threads import on_one_thread
+from gearwear.wear.alike import alike
 from gearwear.wear.burr import TipBurr
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_sides, faint_wear, flank_limits, upper_limit
@@ -254,7 +255,10 @@ def find_wear(
     whole[..., sheets.fillet :] |= (volumes.rest > 0.5)[:, None, None] & places.allowed[at][..., sheets.fillet :]
     area = (whole * sheets.area).sum(axis=(1, 2))
     peaks = deepest_to_mean(volumes.deepest[:, 0], volumes.value / area, where[:, 1])
-    level = np.hypot(common_level_std(covariance, area, where[:, 1]) * peaks, volumes.apart[where[:, 1]])
+    common = common_level_std(covariance, area, where[:, 1]) * peaks
+    if loop is not None:
+        common = np.maximum(common, np.take(loop.as_made_std, where[:, 1]))
+    level = np.hypot(common, volumes.apart[where[:, 1]])
     regions = list[WearRegion]()
     for i in map(int, np.flatnonzero(sure)):
         one = tuple(where[i])
@@ -265,6 +269,9 @@ def find_wear(
         if sure[i]:
             regions.append(region)
             counted[one] = whole[i]
+    if errors:
+        by_side = [([one for one in regions if one.side is side], common[where[:, 1] == side.index]) for side in Side]
+        regions = [one for own, known in by_side for one in _alike(own, known, worn, volumes.apart)]
     regions.sort(key=lambda region: -region.volume)
     looked_at = ~(rim(counted, places.around) | rim(places.at_ends, places.around))
     faint = faint_wear(sheets, looked_at, noise, places.spread) if errors else math.nan
@@ -281,6 +288,25 @@ def find_wear(
         edge_depth=places.edge_depth, unseen=sum(region.max_depth * float(places.beyond[region.tooth, region.side.index].sum()) for region in regions),
         proud=laid.proud, unsure=unsure, apart=(float(volumes.apart[0]), float(volumes.apart[1])),
     )  # fmt: skip
+
+
+def _alike(regions: list[WearRegion], common: Floats, worn: frozenset[Side], apart: Floats) -> list[WearRegion]:
+    """The regions of one side, whose levels are known to `common` all together, and made `apart`, mm: if it is worn throughout, each as deep as the others
+    make likely."""
+    if not regions or regions[0].side not in worn:
+        return regions
+    shared, level = float(common.max()), float(apart[regions[0].side.index])
+
+    def each(name: str) -> Floats:
+        return np.array([getattr(one, name) for one in regions])
+
+    own = np.sqrt(np.maximum(each("max_depth_std") ** 2 - shared**2 - level**2, 0.0))
+    mean_std = np.sqrt(np.maximum((each("volume_std") / each("area")) ** 2 - shared**2, 0.0))
+    value, own = alike(each("max_depth"), own, each("mean_depth"), mean_std, level)
+    return [
+        replace(one, max_depth=float(deep), max_depth_std=math.hypot(known, shared))
+        for one, deep, known in zip(regions, value, own, strict=True)
+    ]
 
 
 def common_level_std(covariance: Floats, area: Floats, side: Ints) -> Floats:
@@ -401,7 +427,6 @@ class _Flank:
             known = loop.covariance
             steps = (known.row_step, known.column_step)
             least, deep_std, usual_std = least_mean(deviation, standing, white, (rows, window), known.texture, steps)
-            level = max(level, loop.as_made_std[self.side.index])
             deep_std, usual_std = (math.hypot(std, level) for std in (deep_std, usual_std))
         deepest = -least
         if np.isfinite(self.surface).all():

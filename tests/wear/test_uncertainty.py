@@ -69,6 +69,7 @@ def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monk
         np.full((1, 2), np.nan),
         np.zeros(1, dtype=bool),
         np.zeros(1),
+        np.zeros(2),
     )
     monkeypatch.setattr(regions, "region_volumes", lambda *_: given)
     monkeypatch.setattr(places, "hollowed_sides", lambda local: np.full(local.shape[:2], hollow))
