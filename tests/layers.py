@@ -116,6 +116,12 @@ def parsed(source: str) -> ast.Module:
     return ast.parse(source)
 
 
+@cache
+def nodes(tree: ast.Module) -> tuple[ast.AST, ...]:
+    """All of a module's tree, walked once for all rules."""
+    return tuple(ast.walk(tree))
+
+
 def room_of(module: str) -> str:
     """Room of a dotted module of the package; the front doors are one."""
     parts = module.split(".")
@@ -125,16 +131,21 @@ def room_of(module: str) -> str:
     return name if name in MAY_IMPORT or name in FREE else FRONT
 
 
+def last_name(node: ast.expr) -> str:
+    """Name, or the last one of dotted ones; empty of anything else. To write the tree out as text would take most of the time."""
+    return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
+
+
 def imports(tree: ast.Module, module: str, package: bool) -> Iterator[Import]:
     """All imports of a module, wherever they stand, relative ones made absolute, and those by name in a string."""
     typing_only = {
         id(inner)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.If) and ast.unparse(node.test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING")
+        for node in nodes(tree)
+        if isinstance(node, ast.If) and last_name(node.test) == "TYPE_CHECKING"
         for statement in node.body
         for inner in ast.walk(statement)
     }
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         runs = id(node) not in typing_only
         if isinstance(node, ast.Import):
             for alias in node.names:
@@ -148,7 +159,7 @@ def imports(tree: ast.Module, module: str, package: bool) -> Iterator[Import]:
                 star = alias.name == "*"
                 # `from gearwear import wear` imports a module; `from gearwear.wear import volume` needs no more than its room
                 yield Import(base if star else f"{base}.{alias.name}", node.lineno, star, runs)
-        elif isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__"):
+        elif isinstance(node, ast.Call) and last_name(node.func) in ("import_module", "__import__"):
             first = node.args[0] if node.args else None
             if isinstance(first, ast.Constant) and isinstance(first.value, str):
                 yield Import(first.value, node.lineno, runs=runs)
@@ -197,7 +208,7 @@ def violations(source: str, module: str, package: bool = False) -> list[str]:
                 found.append((one.line, f"report computes nothing: it takes types from {other}, not {parts[-1]}"))
         elif one.runs and top in ONLY_IN and room not in ONLY_IN[top]:
             found.append((one.line, f"{room} imports {top}, which belongs to {', '.join(sorted(ONLY_IN[top])) or 'nobody'}"))
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         for name in _names(node):
             if name in FORBIDDEN_NAMES:
                 found.append((getattr(node, "lineno", 0), f"the name `{name}`: triangles or meshing?"))
@@ -230,7 +241,7 @@ def large_dataclasses(folder: Path) -> set[str]:
     """Names of the dataclasses with more than `MOST_BY_POSITION` fields of their own."""
     found = set()
     for _, _, source in modules(folder):
-        for node in ast.walk(parsed(source)):
+        for node in nodes(parsed(source)):
             if isinstance(node, ast.ClassDef) and any("dataclass" in ast.unparse(one) for one in node.decorator_list):
                 fields = [b for b in node.body if isinstance(b, ast.AnnAssign) and "ClassVar" not in ast.unparse(b.annotation)]
                 if len(fields) > MOST_BY_POSITION:
@@ -241,8 +252,8 @@ def large_dataclasses(folder: Path) -> set[str]:
 def by_position(source: str, module: str, large: set[str]) -> list[str]:
     """Where a large dataclass is built with more than four fields by position, or with a starred list of them."""
     found = []
-    for node in ast.walk(parsed(source)):
-        if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in large:
+    for node in nodes(parsed(source)):
+        if isinstance(node, ast.Call) and last_name(node.func) in large:
             starred = any(isinstance(one, ast.Starred) for one in node.args)
             if len(node.args) > 4 or starred:
                 found.append(f"{module}: {ast.unparse(node.func)}")

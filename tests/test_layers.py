@@ -7,7 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from tests.layers import FREE, MAY_IMPORT, SHIMS, arrows, by_position, circles, large_dataclasses, modules, parsed, violations
+from tests.layers import (
+    FREE,
+    MAY_IMPORT,
+    SHIMS,
+    arrows,
+    by_position,
+    circles,
+    large_dataclasses,
+    modules,
+    nodes,
+    parsed,
+    violations,
+)
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "gearwear"
@@ -31,9 +43,7 @@ def test_one_built_by_position_would_be_seen():
 
 def test_no_class_name_is_there_twice():
     trees = [parsed(source) for _, _, source in modules(PACKAGE)]
-    names = Counter(
-        node.name for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef) and node.name[0] != "_"
-    )
+    names = Counter(node.name for tree in trees for node in nodes(tree) if isinstance(node, ast.ClassDef) and node.name[0] != "_")
     assert names.total() > 100
     assert [name for name, times in names.items() if times > 1] == []
 
