@@ -137,13 +137,20 @@ def write_inspection(
 def write_columns(path: Path, columns: Mapping[str, NDArray[Any]]) -> None:
     """Columns of equal length as CSV, empty where not seen."""
     digits = {"_mm": 5, "_um": 3, "age": 3}
-    cells = [[_cell(value, digits.get(name[-3:], 0)) for value in column] for name, column in columns.items()]
+    cells = [_written(column, digits.get(name[-3:], 0)) for name, column in columns.items()]
     write_csv(path, columns, zip(*cells, strict=True))
+
+
+def _written(column: NDArray[Any], digits: int) -> list[str]:
+    if column.dtype == np.float64:
+        rounded = (np.round(column, digits) + 0.0).tolist()  # no −0
+        return [f"{value:.{digits}f}" if math.isfinite(value) else "" for value in rounded]
+    return [_cell(value, digits) for value in column]
 
 
 def _cell(value: object, digits: int) -> str:
     if isinstance(value, float):
-        return f"{round(value, digits) + 0.0:.{digits}f}" if math.isfinite(value) else ""  # no −0
+        return f"{round(value, digits) + 0.0:.{digits}f}" if math.isfinite(value) else ""
     return str(value)
 
 
