@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import cache
 from importlib.resources import files
 from typing import Any
 
@@ -48,6 +49,7 @@ def validator(name: str) -> Draft202012Validator:
 VALIDATOR = validator("report")
 
 
+@cache
 def with_forecast() -> Any:
     """A pair whose wear law was fitted, with a forecast and limits."""
     design = gw.read_design(gw.example())
@@ -62,6 +64,7 @@ def with_forecast() -> Any:
     return changed(fake_results(), "pair.law", WearStudy(gw.Side.LEFT, (0, 2, 3), (1,), fits, "", forecast, left, 0.44))
 
 
+@cache
 def with_load() -> Any:
     """The same with the pair under load, and wear that leans across the face."""
     load = study_load(gw.read_design(gw.example()), load=LoadSpec(load_per_width=100.0, misalignment=0.01))
@@ -132,12 +135,17 @@ def short(node: Any) -> Any:
 def seen_to_be_wrong(validator: Draft202012Validator, whole: Any, may_be_missing: Callable[[str, str | int], bool]) -> int:
     """Take away each key, and give it a value of another kind, one at a time; how many there were."""
     assert validator.is_valid(whole)
-    parts = {key: validator.evolve(schema=part) for key, part in validator.schema["properties"].items()}
 
     def is_valid(path: tuple[str | int, ...]) -> bool:
-        """Of the whole; the part that was changed is looked at first, which mostly tells, and sooner."""
-        changed_within = len(path) > 1 and path[0] in parts
-        return not (changed_within and not parts[path[0]].is_valid(whole[path[0]])) and validator.is_valid(whole)
+        """Of the whole; the innermost part that was changed is looked at first, then that round it: mostly it tells, and sooner."""
+        part, within, parts = validator.schema, whole, [(validator.schema, whole)]
+        for key in path[:-1]:
+            part, within = part.get("items" if isinstance(key, int) else "properties", {}), within[key]
+            part = part if isinstance(key, int) else part.get(key, {})
+            if not isinstance(part, dict):
+                break
+            parts.append((part, within))
+        return all(validator.evolve(schema=part).is_valid(within) for part, within in reversed(parts))
 
     every = list(paths(whole))
     for path in every:
