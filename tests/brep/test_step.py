@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import re
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import build123d
-import cadquery
 import numpy as np
 import pytest
 from build123d import import_step
@@ -77,7 +78,13 @@ def test_the_pair_read_back_meshes(tmp_path):
     assert -1e-9 <= least_clearance(case, pair) - half <= BETWEEN
 
 
-def test_cadquery_reads_every_file(files, paper):
+@pytest.fixture(scope="module")
+def cadquery() -> ModuleType:
+    """Loaded where it is asked for: every process that collects this file would take a second for it."""
+    return import_module("cadquery")
+
+
+def test_cadquery_reads_every_file(cadquery, files, paper):
     for name, parts in (("pinion", ["pinion"]), ("gear", ["gear"]), ("pair", ["pinion", "gear"])):
         solids = cadquery.importers.importStep(str(files[name])).solids().vals()
         assert len(solids) == len(parts)
@@ -87,20 +94,20 @@ def test_cadquery_reads_every_file(files, paper):
             assert solid.Volume() == pytest.approx(gear.section_area() * gear.face_width, rel=1e-9)
 
 
-def test_flanks_and_roots_survive_cadquery(files, paper):
+def test_flanks_and_roots_survive_cadquery(cadquery, files, paper):
     solid = cadquery.importers.importStep(str(files["pinion"])).val()
     found = measure(build123d.Solid(solid.wrapped), paper.gears["pinion"])
     assert found.flank < 1e-9
     assert found.fillet < 1e-8
 
 
-def test_cadquery_reads_the_names_of_the_assembly(files):
+def test_cadquery_reads_the_names_of_the_assembly(cadquery, files):
     assembly = cadquery.Assembly.importStep(str(files["pair"]))
     assert assembly.name == "pair"
     assert [child.name for child in assembly.children] == ["pinion", "gear"]
 
 
-def test_build123d_and_cadquery_share_one_kernel():
+def test_build123d_and_cadquery_share_one_kernel(cadquery):
     # Unpinned they bring two OCP versions into one folder, and build123d no longer imports.
     box = build123d.Solid.make_box(1.0, 2.0, 3.0)
     assert cadquery.Solid(box.wrapped).Volume() == pytest.approx(6.0, rel=1e-12)
