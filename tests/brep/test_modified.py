@@ -40,7 +40,7 @@ def made(request, tmp_path_factory) -> tuple[Gear, Solid]:
 def test_flanks_are_the_drawing_s(made):
     gear, solid = made
     faces = tooth_faces(solid)
-    points = np.concatenate([face_points(faces[i], 9) for i in np.random.default_rng(8).permutation(len(faces))[:70]])
+    points = np.concatenate([face_points(faces[i], 7) for i in np.random.default_rng(8).permutation(len(faces))[:70]])
     radius = np.hypot(points[:, 0], points[:, 1])
     points = points[(radius > gear.form_radius + 1e-9) & (radius < gear.flank_end_radius - 1e-9)]
     radius, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]

@@ -28,7 +28,7 @@ MADE = Recipe(
         Effect("tooth_thickness", {"thickness_um": THICKNESS}),
         Effect("coating", {"thickness_um": 20.0}),
     ),
-).of_size(60_000)
+).of_size(40_000)
 
 
 @pytest.fixture(scope="module")

@@ -55,7 +55,7 @@ def contact(first, second, exact, side=Side.LEFT, positions=5):
     )
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(pairs(), st.sampled_from(list(Side)))
 def test_backlash_and_error_are_what_the_flanks_do(pair, side):
     first, second, exact = pair
@@ -125,7 +125,7 @@ def test_moving_apart_shortens_the_path_and_opens_everything(pair, further):
     assert far.interference_pinion.penetration <= exact.interference_pinion.penetration + 1e-9 * first.transverse_module
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(pairs())
 def test_the_closest_distance_is_where_the_first_touch_is(pair):
     first, second, _ = pair

@@ -22,7 +22,7 @@ def shrunk():
     index = Effect("pitch", {"index_um": tuple(20.0 * np.cos(np.arange(21.0) ** 2))})
     scale, texture = Effect("scale", {"relative_ppm": TOO_SMALL_PPM}), Texture(6.6, 0.64, "exponential")
     recipe = Recipe(SMALL, effects=(scale, index), texture=texture, pose="mild", noise_um=11.0, ends="none", lost=0.044)
-    return make_scan(recipe.of_size(36_000), 1)
+    return make_scan(recipe.of_size(20_000), 1)
 
 
 def test_points_higher_than_the_tips_stay_where_they_lie(shrunk):
