@@ -51,6 +51,7 @@ def test_a_flank_that_no_cell_tells_may_stand_off_as_others_would():
     assert found.max() == pytest.approx(expected, rel=0.1)
 
 
+@pytest.mark.long
 def test_flanks_that_tell_their_own_level_have_no_doubt():
     _, loop, *_ = closed(1)
     assert loop.untold is None

@@ -41,6 +41,7 @@ def test_noise_of_the_scan_is_found(found):
     assert found.coverage.min() > 0.95
 
 
+@pytest.mark.long
 def test_uncertainties_of_slopes_and_positions_are_calibrated(pinion):
     """Pulls over 24 flanks and 8 scans with other noise and other points."""
     truth = 0.006

@@ -138,6 +138,7 @@ def test_a_ghost_order_is_named_with_its_size_and_phase(gear):
     assert found.waves[1] == ()
 
 
+@pytest.mark.long
 def test_white_noise_has_no_waves(gear):
     """The stated chance of one is 1 % a side: none in eight but once in thirteen such tests; two never."""
     named = 0

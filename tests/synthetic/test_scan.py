@@ -93,7 +93,7 @@ def test_noise_has_its_standard_deviation_on_every_axis():
     assert np.abs(np.corrcoef(noise.T) - np.eye(3)).max() < 4.0 / math.sqrt(len(noise))
 
 
-@pytest.mark.parametrize("kind", ["gauss", "exponential"])
+@pytest.mark.parametrize("kind", ["gauss", pytest.param("exponential", marks=pytest.mark.long)])
 def test_texture_has_its_deviation_and_correlation_length(kind):
     length, spacing = 0.8, 0.2
     recipe = Recipe(

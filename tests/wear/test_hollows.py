@@ -50,10 +50,8 @@ def measured(points: SurfacePoints, worn: frozenset[Side] = frozenset()) -> tupl
     return alone, replace(alone, hollows=hollows)
 
 
-@pytest.mark.parametrize(
-    ("wide", "depth"),
-    [pytest.param(8.0, 0.02, marks=pytest.mark.long), (8.0, 0.08), pytest.param(12.0, 0.15, marks=pytest.mark.long)],
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("wide", "depth"), [(8.0, 0.02), (8.0, 0.08), (12.0, 0.15)])
 def test_the_bottom_of_a_hollow_is_not_averaged_away(wide, depth):
     """Of 20 scans each: errors of about one standard deviation, where sections alone are two off, and 95 % intervals that hold."""
     least, errors, stds, held, before = NOMINAL - TURN * depth, [], [], [], []

@@ -34,7 +34,7 @@ def test_the_least_of_many_alike_is_not_below_them(kind):
     assert held >= binom.ppf(0.001, SCANS, 0.9)
 
 
-@pytest.mark.parametrize("shape", [(27, 1), (22, 3), (60, 3)], ids=str)
+@pytest.mark.parametrize("shape", [(27, 1), (22, 3), pytest.param((60, 3), marks=pytest.mark.long)], ids=str)
 def test_of_few_places_on_many_curves_alike_the_least_of_all_is_theirs(shape):
     """As thin scans leave them: the least of the curves' means, 1.1 to 2.2 standard deviations of a value too low, says nothing of the least of all."""
     random, held, off = np.random.default_rng(5), 0, []
@@ -94,6 +94,7 @@ def test_the_deepest_mean_of_a_flat_floor_is_its_depth():
     assert (np.abs(found[:, 0] + 0.1) < 1.96 * found[:, 1]).sum() >= binom.ppf(0.001, 40, 0.9)
 
 
+@pytest.mark.long
 def test_how_sure_a_window_is_hangs_on_noise_and_bend_not_on_luck():
     """40 flat floors: that of the deepest window scatters with what chance left near it. With 4 of the noise's deviations of a bend allowed for, over
     24 and in both ways, a window of one cell that lies on a flat floor is known to σ √(1 + (1/3)²); twice the noise, twice that."""

@@ -185,6 +185,7 @@ def test_another_reader_finds_the_same_volume(solid, suffix, tmp_path):
         assert read.volume == pytest.approx(volume, rel=1e-5)
 
 
+@pytest.mark.long
 def test_a_users_own_noisy_solid_adds_its_noise_to_what_is_removed_and_not_to_the_difference(solid):
     """White noise of 20 µm on every vertex of the tooth surfaces: where it digs in it is taken for missing, where it stands out for nothing."""
     rng = np.random.default_rng(1)

@@ -64,7 +64,7 @@ def test_means_over_cells_give_the_law_of_the_points(pinion, wheel, places):
     assert np.abs(wide.fitted - depth).max() < 0.5 * np.abs(point.fitted - depth).max()
 
 
-@pytest.mark.parametrize("length", [0.0, 1.5])
+@pytest.mark.parametrize("length", [pytest.param(0.0, marks=pytest.mark.long), 1.5])
 def test_one_profile_without_errors_says_how_sure_it_is_by_what_it_leaves(pinion, wheel, length):
     random, sd, runs = np.random.default_rng(8), 0.0007, 300
     factor = np.linalg.cholesky(np.eye(90) if length == 0.0 else alike(length))
@@ -200,6 +200,7 @@ class TestExplained:
 
 
 class TestForecast:
+    @pytest.mark.long
     def test_its_band_holds_what_comes(self, pinion, wheel):
         """Wear that follows the law, seen with textured errors: three times the cycles lie in the 95 % band."""
         random, runs, sd = np.random.default_rng(10), 150, 0.0015

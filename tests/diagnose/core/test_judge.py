@@ -46,6 +46,7 @@ def test_statistic_is_the_ratio_to_the_noise():
     assert found.effective_number == pytest.approx(U.size)
 
 
+@pytest.mark.long
 def test_p_values_in_noise_are_even_times_the_number_of_candidates():
     p = np.array([evidence(noise(seed), [(Toy("u"), U)]).p_value for seed in range(300)])
     for level in (0.1, 0.3, 0.6):
