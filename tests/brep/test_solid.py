@@ -34,7 +34,7 @@ SPREAD = {
     "large shift": (40, 5.0, 22.5, 0.8, 0.20, 1.4),
     "two hundred teeth": (200, 2.0, 14.5, 0.0, 0.30, 1.25),
 }
-LONG = ("paper gear", "six teeth, large", "14.5 degrees", "large shift", "two hundred teeth")
+LONG = ("paper gear", "six teeth, large", "just not undercut", "14.5 degrees", "large shift", "two hundred teeth")
 """Of many faces, or of another size: what the others show again."""
 
 

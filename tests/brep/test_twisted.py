@@ -28,7 +28,9 @@ SPREAD = {
 }
 
 
-@pytest.fixture(scope="module", params=SPREAD, ids=list(SPREAD))
+@pytest.fixture(
+    scope="module", params=[pytest.param(name, id=name, marks=[pytest.mark.long] * ("left hand" in name)) for name in SPREAD]
+)
 def made(request, tmp_path_factory) -> tuple[Gear, Solid]:
     """A gear, and its solid from the STEP file."""
     teeth, module, width, degrees, extra = SPREAD[request.param]

@@ -159,6 +159,6 @@ def lies_on_the_design(told: Any, teeth: int) -> None:
     assert placed["tip_radius_mm"] == pytest.approx(drawn["tip_radius_mm"], abs=0.5e-3 * told["closed_loop"]["noise_um"])
 
 
-@pytest.mark.parametrize(("made", "teeth"), [(few, 5), (many, 200)])
+@pytest.mark.parametrize(("made", "teeth"), [(few, 5), pytest.param(many, 200, marks=pytest.mark.long)])
 def test_few_and_many_teeth(compared, made, teeth):
     lies_on_the_design(compared(*made()), teeth)

@@ -51,7 +51,9 @@ def worn_flanks(measured) -> list[list[int]]:
     return np.argwhere(low.any(axis=(2, 3))).tolist()
 
 
-@pytest.mark.parametrize(("tooth", "turn"), [pytest.param(0, 0.3, marks=pytest.mark.long), (4, 2.2), (9, -1.0)])
+@pytest.mark.parametrize(
+    ("tooth", "turn"), [pytest.param(0, 0.3, marks=pytest.mark.long), pytest.param(4, 2.2, marks=pytest.mark.long), (9, -1.0)]
+)
 def test_the_tooth_at_the_keyway_is_tooth_1_however_the_gear_lies(tooth, turn):
     measured = register(designed(KEYED), as_scan(marked(Keyway(tooth * PITCH + 0.05), laid(turn, False))))
     assert worn_flanks(measured) == [[(5 - tooth) % 12, 0]]

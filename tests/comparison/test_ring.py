@@ -40,7 +40,7 @@ def compared(ring: Ring, coat: float):
     return measured, gw.find_wear(measured), patch
 
 
-@pytest.mark.parametrize(("ring", "coat"), [(SPUR, 0.0), (HELICAL, 0.014)])
+@pytest.mark.parametrize(("ring", "coat"), [pytest.param(SPUR, 0.0, marks=pytest.mark.long), (HELICAL, 0.014)])
 def test_volume_and_effect_come_out(ring, coat):
     measured, wear, patch = compared(ring, coat)
     assert [effect.name for effect in measured.loop.effects] == ["coating"] * (coat > 0.0)
@@ -55,7 +55,7 @@ def test_volume_and_effect_come_out(ring, coat):
     assert region.max_depth == pytest.approx(patch.depth, abs=0.02)
 
 
-@pytest.mark.parametrize("ring", [SPUR, pytest.param(HELICAL, marks=pytest.mark.long)])
+@pytest.mark.parametrize("ring", [pytest.param(SPUR, marks=pytest.mark.long), HELICAL])
 def test_teeth_are_as_thick_as_drawn_but_for_the_wear(ring):
     measured, _, patch = compared(ring, 0.0 if ring is SPUR else 0.014)
     found = section_thickness(measured.flanks, measured.gear, measured.noise)

@@ -53,7 +53,14 @@ def seen_in(name: str) -> Survey:
     return survey(scan(KINDS[name]))
 
 
-LONG = ("narrow, little", "groove, halves staggered", "ring in its rim", "ring without end faces")
+LONG = (
+    "right hand",
+    "left hand, few teeth",
+    "narrow, little",
+    "groove, halves staggered",
+    "ring in its rim",
+    "ring without end faces",
+)
 """Of which another kind shows the same in less time."""
 
 

@@ -153,6 +153,7 @@ def test_pressure_is_that_of_the_normal_force_on_the_contact_line(helical, elast
     assert known.sum() > 500
 
 
+@pytest.mark.long
 def test_the_other_hand_is_the_mirror_image(elastic):
     """Mirrored in z: hand and heights change, sides stay."""
     right, left = pair(), pair(-BETA)

@@ -79,7 +79,11 @@ def triangles(body: Gear, bore: float, roll: np.ndarray, fine: Fineness) -> np.n
 
 @pytest.mark.parametrize(
     ("bore", "change"),
-    [(24.0, {}), (12.0, {"rack_tip_radius": 0.05, "dedendum": 1.4}), (12.0, {"profile_shift": 0.5, "dedendum": 1.0})],
+    [
+        pytest.param(24.0, {}, marks=pytest.mark.long),
+        (12.0, {"rack_tip_radius": 0.05, "dedendum": 1.4}),
+        pytest.param(12.0, {"profile_shift": 0.5, "dedendum": 1.0}, marks=pytest.mark.long),
+    ],
 )
 def test_roots_and_bores_count_as_by_triangles(bore, change):
     body = gear(15, **change)

@@ -84,8 +84,10 @@ def test_uniform_wear_of_one_tooth_is_the_lag_while_that_tooth_leads(own, mate, 
     assert result.driver_radius[leads].max() == pytest.approx(high, abs=3 * step)
 
 
-@pytest.mark.parametrize("depth", [1.872, 1.4])
-@pytest.mark.parametrize("n", [17, 60])
+@pytest.mark.parametrize(
+    ("depth", "n"),
+    [(1.872, 17), pytest.param(1.872, 60, marks=pytest.mark.long), pytest.param(1.4, 17, marks=pytest.mark.long), (1.4, 60)],
+)
 def test_a_tooth_worn_more_than_its_neighbours_can_do_without_never_touches(own, mate, depth, n):
     result = mesh_contact(wear(own, depth, [0]), mate, C, positions_per_pitch=n)
     assert result.transmission_error_min.value == pytest.approx(-1.328, abs=0.002)
@@ -113,7 +115,7 @@ def test_equal_wear_of_all_teeth_is_constant_and_leaves_path_and_ratio(own, mate
         (0.0, range(12), 0.0, 1.300, 1.473, 35.93, 44.45),
         (1.0, range(12), 87.0, 1.007, 1.06, 36.20, 41.76),
         pytest.param(0.1, range(12), 9.3, 1.057, 1.40, None, None, marks=pytest.mark.long),
-        (1.0, [0], 38.3, None, None, 37.09, 39.20),
+        pytest.param(1.0, [0], 38.3, None, None, 37.09, 39.20, marks=pytest.mark.long),
     ],
 )
 def test_sliding_like_wear_takes_contact_to_the_pitch_point(pinion, mate, factor, teeth, lag, within_1, within_10, low, high):
@@ -146,7 +148,9 @@ def test_a_root_drawn_radial_below_the_base_circle_collides(pinion, mate):
     assert far.transmission_error_max.value == pytest.approx(0.0, abs=2e-5)
 
 
-@pytest.mark.parametrize(("teeth", "lag", "margin"), [([0], 0.542, 0.003), (range(12), 0.812, 0.013)])
+@pytest.mark.parametrize(
+    ("teeth", "lag", "margin"), [([0], 0.542, 0.003), pytest.param(range(12), 0.812, 0.013, marks=pytest.mark.long)]
+)
 def test_wear_that_stops_at_the_form_circle_leaves_a_ledge_for_the_mates_tip(pinion, mate, teeth, lag, margin):
     # A ledge one grid step (0.01 mm) lower lowers the numbers by 0.005 and 0.010 mm: that is the reference's margin.
     edge = [pinion.form_radius - 1e-6, pinion.form_radius]

@@ -141,7 +141,7 @@ def in_pinion(pinion: Gear, ring: Gear, centre: float, points: np.ndarray, turn:
 
 
 @every_pair
-@pytest.mark.parametrize("closer", [0.0, 0.3])
+@pytest.mark.parametrize("closer", [pytest.param(0.0, marks=pytest.mark.long), 0.3])
 def test_flanks_touch_in_space_and_the_others_are_the_backlash_apart(pinion, ring, closer):
     """All flank points of the ring, held against the pinion's surface by its distance; the ring stands where the contact says."""
     centre = standard(pinion, ring) - closer
@@ -214,7 +214,15 @@ def test_one_worn_tooth_is_felt_where_it_meshes():
     assert np.abs(1e3 * linear.transmission_error - result.transmission_error_um)[lagging].max() < 1e-6
 
 
-@pytest.mark.parametrize(("teeth", "tip"), [((20, 72), 1.0), ((17, 60), 1.0), ((17, 60), 0.8), ((16, 48), 1.0)])
+@pytest.mark.parametrize(
+    ("teeth", "tip"),
+    [
+        pytest.param((20, 72), 1.0, marks=pytest.mark.long),
+        ((17, 60), 1.0),
+        ((17, 60), 0.8),
+        pytest.param((16, 48), 1.0, marks=pytest.mark.long),
+    ],
+)
 def test_tips_that_dig_into_fillets(teeth, tip):
     """The ring's tips, rolled past the pinion and held against its surface by the distance of points."""
     pinion = Gear.from_spec(GearSpec("pinion", teeth[0], 2.0, 15.0))

@@ -42,8 +42,18 @@ def laid_on(points: np.ndarray, teeth: int, module: float, pressure_angle: float
     return register(parse_design({"gear": gear}), as_scan(points)).notes
 
 
-@pytest.mark.parametrize("numbers", [PINION, MIDDLE, FINE], ids=["12", "31", "54"])
-@pytest.mark.parametrize("degrees", [90.0, 20.0])
+@pytest.mark.parametrize(
+    ("numbers", "degrees"),
+    [
+        (PINION, 20.0),
+        pytest.param(PINION, 90.0, marks=pytest.mark.long),
+        pytest.param(MIDDLE, 20.0, marks=pytest.mark.long),
+        (MIDDLE, 90.0),
+        (FINE, 20.0),
+        pytest.param(FINE, 90.0, marks=pytest.mark.long),
+    ],
+    ids=lambda of: of if isinstance(of, float) else of.teeth,
+)
 def test_a_section_stretched_along_one_direction_is_still_of_its_gear(numbers, degrees):
     laid_on(outline(numbers, STRETCH, degrees), numbers.teeth, numbers.module)
 
@@ -68,7 +78,7 @@ def design_of(numbers: GearNumbers, name: str) -> tuple[int, float, float]:
 
 
 @pytest.mark.parametrize("name", OTHER)
-@pytest.mark.parametrize("numbers", [PINION, MIDDLE], ids=["12", "31"])
+@pytest.mark.parametrize("numbers", [PINION, pytest.param(MIDDLE, marks=pytest.mark.long)], ids=["12", "31"])
 def test_a_stretched_section_of_another_gear_is_refused_or_doubted(numbers, name):
     try:
         notes = laid_on(outline(numbers, STRETCH), *design_of(numbers, name))

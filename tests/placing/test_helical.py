@@ -23,7 +23,7 @@ from tests.synthetic.test_helical import designed
 from tests.synthetic.tooth import Cloud
 
 RIGHT, STEEP = Helical(), Helical(teeth=21, helix=-33.0, width=25.0, tip_radius=0.2)
-SEEN = (RIGHT, STEEP)
+SEEN = (pytest.param(RIGHT, marks=pytest.mark.long), STEEP)
 
 
 @cache
@@ -89,7 +89,7 @@ def test_moving_along_the_teeth_leaves_their_flanks():
     ],
 )
 def test_a_wrong_hand_or_angle_is_refused_by_name(degrees, said):
-    cloud = scan(RIGHT, 25_000, seed=4)
+    cloud = scan(RIGHT, 12_000, seed=4)
     design = designed(Helical(helix=degrees))
     with pytest.raises(InputError) as error:
         check_gear(place([cloud.points], design, [None]), design)

@@ -193,7 +193,7 @@ def test_normals_of_the_file_may_point_either_way_or_be_wrong(kind):
     assert abs(np.linalg.norm(off.shift) - shift) < SETTLED
 
 
-@pytest.mark.parametrize("factor", [0.99, 1.01])
+@pytest.mark.parametrize("factor", [pytest.param(0.99, marks=pytest.mark.long), 1.01])
 def test_a_scan_of_another_size_is_laid_on_the_design_and_not_shrunk_to_it(factor):
     """Rigid: what a scale adds must still be there afterwards, at the tips and between the end faces."""
     scan = plain(20_000)
@@ -233,8 +233,15 @@ class TestUniformLoss:
         assert register(plain(20_000).points, GEAR).notes == ()
 
 
-@pytest.mark.parametrize("in_design", [True, False])
-@pytest.mark.parametrize("in_scan", [True, False])
+@pytest.mark.parametrize(
+    ("in_scan", "in_design"),
+    [
+        (True, True),
+        (True, False),
+        pytest.param(False, True, marks=pytest.mark.long),
+        pytest.param(False, False, marks=pytest.mark.long),
+    ],
+)
 def test_a_bore_in_the_scan_or_in_the_design(in_scan, in_design):
     """Where the design has none its points are left out, and say so by the share that fits; nothing else moves."""
     numbers, bored = PINION, GearNumbers(bore_diameter=30.0)
@@ -253,7 +260,7 @@ def test_a_bore_in_the_scan_or_in_the_design(in_scan, in_design):
         assert found.fitting == pytest.approx(1.0 - on_bore.mean(), abs=0.005)
 
 
-@pytest.mark.parametrize("degrees", [180, 90, 40])
+@pytest.mark.parametrize("degrees", [pytest.param(180, marks=pytest.mark.long), 90, 40])
 def test_a_part_of_the_gear_is_enough(degrees):
     """Down to a tooth and a bit; what is less well known is said to be."""
     scan = plain(40_000)

@@ -50,11 +50,11 @@ def test_a_wrong_dedendum_is_found_too(wheel):
 @pytest.mark.parametrize(
     "effect",
     [
-        Effect("coating", {"thickness_um": 25.0}),
-        Effect("tooth_thickness", {"thickness_um": 40.0}),
+        pytest.param(Effect("coating", {"thickness_um": 25.0}), marks=pytest.mark.long),
+        pytest.param(Effect("tooth_thickness", {"thickness_um": 40.0}), marks=pytest.mark.long),
         Effect("scale", {"relative_ppm": 400.0}),
         Effect("profile_slope", {"left_um": 25.0, "right_um": 20.0}),
-        Effect("turntable_angle", {"order": 2, "amplitude_deg": 0.03, "phase_deg": 40.0}),
+        pytest.param(Effect("turntable_angle", {"order": 2, "amplitude_deg": 0.03, "phase_deg": 40.0}), marks=pytest.mark.long),
     ],
     ids=lambda e: e.name,
 )

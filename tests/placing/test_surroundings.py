@@ -89,7 +89,7 @@ def test_what_stands_round_the_gear_does_not_move_it(name):
     np.testing.assert_allclose(other, own, rtol=0, atol=0.005)
 
 
-@pytest.mark.parametrize("written", [5.0, 20.0, 30.0])
+@pytest.mark.parametrize("written", [5.0, pytest.param(20.0, marks=pytest.mark.long), 30.0])
 def test_a_face_width_that_the_end_faces_contradict_is_refused_with_the_right_one(written):
     line = refused(scan(), face_width=written)
     assert "the teeth of the scan are 15 mm wide" in line or "the teeth of the scan are 15.0" in line

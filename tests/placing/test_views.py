@@ -32,7 +32,7 @@ def seen(count: int, overlap: float) -> tuple[SyntheticScan, PlacedScan]:
     return scan, place(scan.views, GEAR, [None] * count)
 
 
-@pytest.mark.parametrize(("count", "overlap"), [(3, 0.5), (4, 0.7)])
+@pytest.mark.parametrize(("count", "overlap"), [(3, 0.5), pytest.param(4, 0.7, marks=pytest.mark.long)])
 class TestPartialViews:
     def test_every_view_is_where_it_was(self, count, overlap):
         """A view of five to seven teeth rests on as many flanks a side: its pulls follow a t distribution of some 9 degrees of freedom.

@@ -69,8 +69,17 @@ def measured(gear, cuts):
     return grid, measure_broken(points, locate(points, design), fractures, border, grid, NOISE)
 
 
-@pytest.mark.parametrize("kind", ["missing tooth", "broken corner"])
-@pytest.mark.parametrize("gear", [ONE, SPUR_RING, HELICAL_RING], ids=["helical", "ring", "helical ring"])
+@pytest.mark.parametrize(
+    ("gear", "kind"),
+    [
+        (ONE, "missing tooth"),
+        pytest.param(ONE, "broken corner", marks=pytest.mark.long),
+        pytest.param(SPUR_RING, "missing tooth", marks=pytest.mark.long),
+        pytest.param(SPUR_RING, "broken corner", marks=pytest.mark.long),
+        pytest.param(HELICAL_RING, "missing tooth", marks=pytest.mark.long),
+        (HELICAL_RING, "broken corner"),
+    ],
+)
 def test_a_cut_is_named_with_its_volume(gear, kind):
     cut = broken_off(gear, kind)
     _, (broken,) = measured(gear, [cut])
@@ -90,6 +99,10 @@ def test_the_other_half_of_a_tooth_stands(kind):
     assert not broken.flank_gone[:, lower].any() and broken.flank_gone[:, upper].any()
 
 
-@pytest.mark.parametrize("gear", [ONE, TWO, SPUR_RING, HELICAL_RING], ids=["helical", "double", "ring", "helical ring"])
+@pytest.mark.parametrize(
+    "gear",
+    [ONE, TWO, pytest.param(SPUR_RING, marks=pytest.mark.long), HELICAL_RING],
+    ids=["helical", "double", "ring", "helical ring"],
+)
 def test_nothing_is_broken_off_a_whole_gear(gear):
     assert measured(gear, [])[1] == ()

@@ -188,7 +188,7 @@ def test_wear_near_the_noise_is_not_seen_and_well_above_it_is():
         assert len(worn(30_000, 8, patch)[1].regions) == regions
 
 
-@pytest.mark.parametrize(("depth", "regions"), [(0.0, 0), (150.0, 1), (600.0, 1)])
+@pytest.mark.parametrize(("depth", "regions"), [(0.0, 0), (150.0, 1), pytest.param(600.0, 1, marks=pytest.mark.long)])
 def test_a_hollow_stands_out_of_flanks_that_stand_at_levels_of_their_own(depth, regions):
     """Index and thickness of each tooth scatter by 25 µm: as much over all of a flank as the hollow has volume."""
     random = np.random.default_rng(3)
@@ -204,6 +204,7 @@ def test_a_hollow_stands_out_of_flanks_that_stand_at_levels_of_their_own(depth, 
     assert abs(found.volume - scan.truth.volume_mm3) <= 3.0 * found.volume_std
 
 
+@pytest.mark.long
 def test_by_chance_no_flank_is_hollow():
     """Of 72,000 flanks of 12 teeth, at levels that scatter five times as much as their cells do, some 10⁻⁴; 36 would be half a per thousand."""
     random, hollow = np.random.default_rng(0), 0
@@ -226,7 +227,9 @@ def test_a_hollow_is_told_whatever_other_flanks_have():
 
 
 @pytest.mark.parametrize(
-    "numbers", [GearNumbers(24), GearNumbers(23, 2.0, 18.0, 25.0, 0.4, rack_tip_radius=0.2)], ids=["24 teeth", "shifted, 25°"]
+    "numbers",
+    [pytest.param(GearNumbers(24), marks=pytest.mark.long), GearNumbers(23, 2.0, 18.0, 25.0, 0.4, rack_tip_radius=0.2)],
+    ids=["24 teeth", "shifted, 25°"],
 )
 def test_other_gears_registered_from_nothing(numbers):
     """From the cloud alone, whatever tooth it then is."""

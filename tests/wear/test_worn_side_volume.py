@@ -65,8 +65,14 @@ def test_flanks_of_a_worn_side_that_do_not_stand_out_count_with_it():
     assert np.abs(errors).max() < 2.5
 
 
-@pytest.mark.parametrize("points", [36_000, 40_000, 44_000, 60_000])
-@pytest.mark.parametrize("noise", [1.0, 10.0])
+@pytest.mark.parametrize(
+    ("points", "noise"),
+    [
+        pytest.param(points, noise, marks=[] if (points, noise) in ((36_000, 1.0), (44_000, 10.0)) else [pytest.mark.long])
+        for points in (36_000, 40_000, 44_000, 60_000)
+        for noise in (1.0, 10.0)
+    ],
+)
 def test_points_of_a_lattice_may_miss_what_wear_takes_off_an_undercut_fillet(points, noise):
     """Sliding after Archard, 0.1 mm at the form circle: a wedge of the fillet there goes with it, 8 % of the volume and narrower than the rows of
     points are apart, and the first column of the flank falls to a tenth. The truth is integrated apart (`tests/synthetic/removal.py`)."""

@@ -78,7 +78,7 @@ def test_specific_sliding_is_the_references():
     np.testing.assert_allclose(found, [-4.89, -1.97, -0.943, 0.0, 0.414, 0.603, 0.758], rtol=0.0, atol=0.006)
 
 
-@pytest.mark.parametrize("depth_um", [40.0, 150.0])
+@pytest.mark.parametrize("depth_um", [pytest.param(40.0, marks=pytest.mark.long), 150.0])
 def test_sliding_wear_without_a_mate_is_known_but_for_a_factor(depth_um):
     found = laws(worn(lambda tooth, side, roll: 1e-3 * depth_um * (side > 0) * sliding(roll, "archard")))
     assert set(found) == {"sliding_wear"}

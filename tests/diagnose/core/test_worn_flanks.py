@@ -46,7 +46,7 @@ def places(teeth: np.ndarray, half: int) -> tuple[int, ...]:
 
 
 @pytest.mark.parametrize(("teeth", "step"), [(24, 3), (36, 3), (36, 4), (25, 6), (18, 6)])
-@pytest.mark.parametrize("half", [0, 1])
+@pytest.mark.parametrize("half", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_every_so_many_flanks_of_a_side(teeth, step, half):
     """They could be waves of one side alone, which nothing makes."""
     sides, worn = scatter(teeth, teeth), np.arange(0, teeth - teeth % step, step)
@@ -70,7 +70,7 @@ def test_each_by_its_own_depth_beside_errors_of_index(seed):
     assert low_flanks(levels(*sides)) == places(worn, 0)
 
 
-@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("sense", [1.0, pytest.param(-1.0, marks=pytest.mark.long)])
 @pytest.mark.parametrize("order", [1.0, 3.4, 4.0, 7.3, 11.0])
 def test_waves_of_both_sides_are_no_wear(order, sense):
     """Whole or not, alike or opposite."""

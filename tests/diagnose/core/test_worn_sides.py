@@ -52,7 +52,7 @@ def worn_sides(wear, effects=(), seed=3):
 @pytest.mark.parametrize(
     ("wear", "sides"),
     [
-        ((SlidingWear(60.0, 1, law="archard"),), LEFT),
+        pytest.param((SlidingWear(60.0, 1, law="archard"),), LEFT, marks=pytest.mark.long),
         ((SlidingWear(60.0, 1, law="archard"), SlidingWear(35.0, -1, law="archard")), BOTH),
         (PATCHES, NO_SIDE),
     ],
