@@ -204,14 +204,13 @@ def test_a_hollow_stands_out_of_flanks_that_stand_at_levels_of_their_own(depth, 
     assert abs(found.volume - scan.truth.volume_mm3) <= 3.0 * found.volume_std
 
 
-@pytest.mark.long
 def test_by_chance_no_flank_is_hollow():
-    """Of 72,000 flanks of 12 teeth, at levels that scatter five times as much as their cells do, some 10⁻⁴; 36 would be half a per thousand."""
+    """Of 24,000 flanks of 12 teeth, at levels that scatter five times as much as their cells do, some 10⁻⁴; 12 would be half a per thousand."""
     random, hollow = np.random.default_rng(0), 0
-    for _ in range(3_000):
+    for _ in range(1_000):
         cells = ndimage.uniform_filter(random.normal(size=(12, 2, 12, 16)), (1, 1, 3, 3))
         hollow += int(hollowed_sides(cells + random.normal(0.0, 5.0, (12, 2, 1, 1))).sum())
-    assert hollow < 36
+    assert hollow < 12
 
 
 def test_a_hollow_is_told_whatever_other_flanks_have():
