@@ -178,7 +178,8 @@ def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks:
         for other in others:
             if other.worn_sides > taken.worn_sides and effect.name not in (named.name for named in other.effects):
                 worn.add(SLIDING_WEAR)
-    if effect.kind is Kind.MANUFACTURE and effect.lowers_by(flanks, taken.context) > 0.0:
+    like_wear = effect.candidate.effect.like_even_wear(effect.amplitudes, effect.candidate.shape, taken.context)
+    if effect.kind is Kind.MANUFACTURE and (like_wear or effect.lowers_by(flanks, taken.context) > 0.0):
         worn.add(ABRASIVE_WEAR)
     return effect.or_one_of(worn)
 

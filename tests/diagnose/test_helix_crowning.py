@@ -21,3 +21,9 @@ def test_adds_nothing_at_mid_face_and_takes_all_at_both_ends():
     np.testing.assert_allclose(EFFECT.basis(points, context(), (0.0,))[:, 0], [-1.0, 0.0, -1.0], atol=1e-12)
     every = feet()
     assert not EFFECT.basis(every, context(), (0.0,))[every.surface != 0].any()
+
+
+def test_a_narrower_mate_leaves_both_ends_of_the_face():
+    """Even wear between them is hollow lengthwise; no wear bulges."""
+    assert EFFECT.like_even_wear(np.array([-0.05]), (0.0,), context())
+    assert not EFFECT.like_even_wear(np.array([0.05]), (0.0,), context())

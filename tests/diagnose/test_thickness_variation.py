@@ -55,3 +55,10 @@ def test_left_and_right_pitch_of_their_own_are_no_error_of_the_table(seed):
     for true in told["true"]:
         for error in true["errors"].values():
             assert np.all(np.abs(error["error"]) < 4.5 * np.array(error["std"]))  # of 24 amounts
+
+
+def test_thin_teeth_whose_fillets_are_as_drawn_may_have_worn_evenly():
+    amounts = np.zeros(context().gear.teeth - 1)
+    assert EFFECT.like_even_wear(amounts, (0.0,), context())
+    assert not EFFECT.like_even_wear(amounts, (1.0,), context())  # cut so, fillets and all
+    assert not EFFECT.like_even_wear(amounts, (0.0,), replace(context(), fillets_told=False))

@@ -174,6 +174,10 @@ class Effect(Protocol):
         """Whether sign and size are physically possible."""
         ...
 
+    def like_even_wear(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        """Whether an even loss, of some teeth or of a part of the face, may look like it."""
+        ...
+
     def tolerance(self, context: Context) -> float | None:
         """Largest amplitude that the drawing allows, inner units; None where it has no say."""
         ...
@@ -226,6 +230,9 @@ class CatalogueEffect:
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return bool(np.all((amplitudes >= self.lower) & (amplitudes <= self.upper)))
+
+    def like_even_wear(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return False
 
     def tolerance(self, context: Context) -> float | None:
         return None

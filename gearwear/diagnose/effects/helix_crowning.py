@@ -36,6 +36,9 @@ class HelixCrowning(CatalogueEffect):
     def shapes(self, context: Context) -> list[Shape]:
         return [(0.0,), (1.0,)]
 
+    def like_even_wear(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return bool(amplitudes[0] < 0.0)  # a narrower mate leaves both ends
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         cut = points.side * side_cut(points, context.gear, shape[0])
         return (-cut * (2.0 * helix_place(points, context.gear)) ** 2)[:, None]

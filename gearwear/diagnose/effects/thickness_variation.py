@@ -33,6 +33,9 @@ class ThicknessVariation(EachTooth):
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("thickness_um"),)
     phrase: ClassVar[str] = "teeth thicker and thinner than their mean, tooth by tooth, by {thickness_um}"
 
+    def like_even_wear(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return context.fillets_told and shape == (0.0,)  # the fillets do not follow
+
     def deviation(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         half = 0.5 * math.cos(context.gear.transverse_pressure_angle)
         return np.asarray(half * points.side * side_cut(points, context.gear, shape[0]))
