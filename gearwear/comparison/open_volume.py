@@ -36,7 +36,7 @@ class OpenVolume:
     def limits(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, its own 95 % interval with them, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
         which sides are worn throughout, what each answer would be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 %
-        interval, wear too faint to be found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all teeth that nothing explains, and teeth thinner than drawn.
+        interval, wear too faint to be found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all teeth that nothing explains, teeth thinner than drawn, and what may be thicker teeth or a ridge at the pitch line.
         None where nothing does."""
         low = high = self.found.volume
         causes = []
@@ -56,6 +56,11 @@ class OpenVolume:
             high += self.found.unseen
             causes.append(
                 "worn flanks of which no tooth was seen whole: what is missing where nothing was seen is not in the value"
+            )
+        if any(self.ridge_or_thick):
+            low, high = low - self.ridge_or_thick[0], high + self.ridge_or_thick[1]
+            causes.append(
+                "worn flanks that stand proud of the design at the pitch line: cut thicker, or raised there by plastic flow, the scan does not tell"
             )
         if (faint := self.too_faint) > 0.0:
             high += faint
@@ -85,6 +90,14 @@ class OpenVolume:
         """What of the volume lies on teeth on which views lie apart, mm³."""
         apart = self.measured.layered
         return sum(region.volume for region in self.found.regions if apart[region.tooth])
+
+    @property
+    def ridge_or_thick(self) -> tuple[float, float]:
+        """By how much less and more the worn sides may have lost, mm³, as what stands proud at the pitch line may be a ridge or thicker teeth; 0 where that
+        is within the volume's standard deviation."""
+        less, more = (depth * self._side_area for depth in self.found.level_open)
+        std = self.found.volume_std
+        return less if less > std else 0.0, more if more > std else 0.0
 
     @property
     def too_faint(self) -> float:

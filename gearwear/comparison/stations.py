@@ -284,6 +284,11 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
         for burr in wear.burrs
     ]
     notes += [
+        f"a ridge of {significant(1e3 * ridge.height, 2)} ± {significant(1e3 * ridge.std, 1)} µm stands at the pitch line of the worn {ridge.side} flanks: metal that was moved there by plastic flow; it is not"
+        " taken off what they lost"
+        for ridge in wear.ridges
+    ]
+    notes += [
         f"the worn {side} flanks stand {1e3 * height:.0f} µm proud of the design where they are highest: the teeth were cut thicker than drawn,"
         " and what is lost is counted from there"
         for side, height in zip(Side, wear.proud, strict=True)

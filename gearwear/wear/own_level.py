@@ -109,16 +109,31 @@ def standing_proud(sheets: SideMaps, loop: Loop | None, worn: frozenset[Side]) -
     if loop is None or loop.made is None or len(worn) != 1:
         return 0.0, 0.0
     (side,) = worn
+    highest = highest_strip(above_made(sheets, side))
+    if highest > NORMAL_95 * loop.as_made_std[side.index]:
+        level[side.index] = highest
+    return level[0], level[1]
+
+
+def above_made(sheets: SideMaps, side: Side) -> Floats:
+    """How far the flanks of a side stand above the gear as made, and above the other side, in the median of the teeth, (rows, columns) mm; nan where most were
+    not seen."""
     flank = np.where(sheets.seen, sheets.deviation, np.nan)[..., sheets.fillet :]
     own, other = (typical_heights(flank[:, one.index]) for one in (side, side.opposite))
-    above = own - np.maximum(np.nan_to_num(other), 0.0)
+    return np.asarray(own - np.maximum(np.nan_to_num(other), 0.0))
+
+
+def highest_strip(above: Floats) -> float:
+    """Mean of the highest strip over the face, or up the profile, of heights (rows, columns), mm; not below 0."""
+    means = (strip_means(above, axis) for axis in (0, 1))
+    return max(float(strips[often].max(initial=0.0)) for strips, often in means)
+
+
+def strip_means(above: Floats, axis: int) -> tuple[Floats, Bools]:
+    """Means of heights (rows, columns) over one axis, mm, and of which strips enough was seen."""
     known = np.isfinite(above)
-    for axis in (0, 1):
-        strips = np.where(known, above, 0.0).sum(axis=axis) / np.maximum(known.sum(axis=axis), 1)
-        highest = float(strips[known.mean(axis=axis) >= SEEN].max(initial=0.0))
-        if highest > max(NORMAL_95 * loop.as_made_std[side.index], level[side.index]):
-            level[side.index] = highest
-    return level[0], level[1]
+    strips = np.where(known, above, 0.0).sum(axis=axis) / np.maximum(known.sum(axis=axis), 1)
+    return np.asarray(strips), np.asarray(known.mean(axis=axis) >= SEEN)
 
 
 def typical_heights(heights: Floats) -> Floats:

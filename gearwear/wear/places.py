@@ -15,6 +15,7 @@ from gearwear.robust import median_scale
 from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
 from gearwear.wear.own_level import at_own_level, standing_proud
+from gearwear.wear.ridge import PitchRidge, worn_level
 from gearwear.wear.volume import FEWEST_PLACEBOS
 
 RIM = 0.2
@@ -40,7 +41,11 @@ class LaidFlat:
     burr_std : (2,) float
         What that leaves uncertain of a flank's volume, by side, mm³.
     proud : (float, float)
-        What left and right flanks were lowered by, mm (`standing_proud`).
+        What left and right flanks were lowered by, mm (`standing_proud`), without a ridge.
+    level_open : (float, float)
+        By how much less and by how much more that may be, mm, as there may be a ridge (`worn_level`).
+    ridges : tuple of PitchRidge
+        What was taken off besides, as far as it stands above that.
     perhaps : float
         What flanks that were raised would have lost were that wear, mm³ (`at_own_level`).
     """
@@ -51,6 +56,8 @@ class LaidFlat:
     burrs: tuple[TipBurr, ...]
     burr_std: Floats
     proud: tuple[float, float]
+    level_open: tuple[float, float]
+    ridges: tuple[PitchRidge, ...]
     perhaps: float
 
 
@@ -64,13 +71,25 @@ def lay_flat(cells: Cells, noise: float, loop: Loop | None, worn: frozenset[Side
         filled = infill(sheets)
         taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
         cells = cells.with_deviation(cells.points.deviation + taken)
-    proud = standing_proud(sheets, loop, worn)
-    if any(proud):
-        raised = np.broadcast_to(np.reshape(proud, (1, 2, 1, 1)), sheets.count.shape)
-        cells = cells.with_deviation(cells.points.deviation - cells.grid.on_cells(raised))
+    proud, level_open, ridges = standing_proud(sheets, loop, worn), (0.0, 0.0), list[PitchRidge]()
+    raised = np.zeros((len(Side), *sheets.count.shape[2:]))
+    for side in Side:
+        if loop is None or proud[side.index] <= 0.0:
+            continue
+        level = worn_level(sheets, cells.grid, loop, side, proud[side.index])
+        raised[side.index] = level.height
+        raised[side.index, :, sheets.fillet :] += level.proud
+        level_open = (level.height - level.low, level.high - level.height)
+        ridges += [] if level.ridge is None else [level.ridge]
+        proud = (level.height, 0.0) if side is Side.LEFT else (0.0, level.height)
+    if raised.any():
+        cells = cells.with_deviation(cells.points.deviation - cells.grid.on_cells(np.broadcast_to(raised, sheets.count.shape)))
         sheets = make_side_maps(cells)
         filled = infill(sheets)
-    return LaidFlat(cells, sheets, filled, burrs, burr_std, proud, perhaps)
+    return LaidFlat(
+        cells=cells, sheets=sheets, filled=filled, burrs=burrs, burr_std=burr_std, proud=proud, level_open=level_open, ridges=tuple(ridges),
+        perhaps=perhaps,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

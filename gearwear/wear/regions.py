@@ -26,6 +26,7 @@ from gearwear.wear.burr import TipBurr
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_sides, faint_wear, flank_limits, upper_limit
 from gearwear.wear.places import LaidFlat, lay_flat, standing_out
+from gearwear.wear.ridge import PitchRidge
 from gearwear.wear.volume import DEEPEST_OVER, Volumes, region_volumes
 
 LEAST_VOLUME = 5.0
@@ -140,6 +141,10 @@ class Wear(Card):
     proud : (float, float)
         How far left and right flanks that are worn throughout stand above the gear as made where they are highest, mm (`standing_proud`); wear is
         counted from there.
+    level_open : (float, float)
+        By how much less and by how much more that may be, mm, as there may be a ridge at the pitch line (`ridge`).
+    ridges : tuple of PitchRidge
+        Metal that stands at the pitch line of such a side: it is no thicker tooth, and not taken off the volume.
     unsure : float
         What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³ (`limits.upper_limit`).
     apart : (float, float)
@@ -162,6 +167,8 @@ class Wear(Card):
     edge_depth: float = 0.0
     unseen: float = 0.0
     proud: tuple[float, float] = (0.0, 0.0)
+    level_open: tuple[float, float] = (0.0, 0.0)
+    ridges: tuple[PitchRidge, ...] = ()
     unsure: float = 0.0
     apart: tuple[float, float] = (0.0, 0.0)
 
@@ -286,7 +293,7 @@ def find_wear(
         side_maps=sheets, mask=counted, depth=np.where(counted, -volumes.filled, 0.0), spread=places.spread, limit=places.limit, flanks=flanks,
         hidden_pits=_hidden_pits(cells, sheets, counted, regions), faint=faint + laid.perhaps, burrs=laid.burrs, edges=int(places.edges.sum()),
         edge_depth=places.edge_depth, unseen=sum(region.max_depth * float(places.beyond[region.tooth, region.side.index].sum()) for region in regions),
-        proud=laid.proud, unsure=unsure, apart=(float(volumes.apart[0]), float(volumes.apart[1])),
+        proud=laid.proud, level_open=laid.level_open, ridges=laid.ridges, unsure=unsure, apart=(float(volumes.apart[0]), float(volumes.apart[1])),
     )  # fmt: skip
 
 

@@ -87,14 +87,16 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "helical_scratch": ("tooth", "depth_um", "width_mm", "roll_mm", "rise_mm_per_mm"),
     "stitch_step": ("step_um", "z_mm"),
     "flank_ripple": ("amplitude_um", "wavelength_mm", "phase_deg"),
+    "pitch_ridge": ("height_um", "width_mm"),
 }
-OUTSIDE = ("wave_growing", "helical_scratch", "stitch_step", "flank_ripple")
+OUTSIDE = ("wave_growing", "helical_scratch", "stitch_step", "flank_ripple", "pitch_ridge")
 """Names no catalogue has.
 
 wave_growing: δ = a (L / L_tip)² cos(n θ_P + φ), θ_P the point's polar angle; both sides.
 helical_scratch: a groove across both flanks of a tooth (0-based), δ = −d exp(−½ (x / w)²), x = L − roll − rise (z − b/2).
 stitch_step: every radius above z grows by the step.
 flank_ripple: δ = a cos(2π L / λ + φ) on all left flanks.
+pitch_ridge: δ = h exp(−½ ((L − L_ref) / w)²) on all left flanks, metal that plastic flow moved to the pitch line.
 """
 
 
@@ -180,6 +182,9 @@ SHIFTS: dict[str, Callable[[Effect, Outline, Feet], Floats]] = {
     "wave_growing": _growing,
     "helical_scratch": _scratch,
     "flank_ripple": lambda e, o, f: (f.side > 0) * _wave(f.roll, e),
+    "pitch_ridge": lambda e, o, f: (
+        (f.side > 0) * e["height_um"] * np.exp(-0.5 * ((f.roll - o.reference_roll) / e["width_mm"]) ** 2)
+    ),
 }
 
 

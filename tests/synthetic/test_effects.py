@@ -133,6 +133,11 @@ FLANK = {
         lambda f: -5.0 * (f.side > 0) * np.sin(2 * math.pi * f.roll / 3.0),
         1e-9,
     ),
+    "pitch_ridge": (
+        {"height_um": 15.0, "width_mm": 1.2},
+        lambda f: 15.0 * (f.side > 0) * np.exp(-((f.roll - OUTLINE.reference_roll) ** 2) / 2.88),
+        1e-9,
+    ),
 }
 RADIAL = {"coating": 18.0, "axis_offset_radial": 20.0, "scale": (500e-3 * OUTLINE.tip_radius, 500e-3 * OUTLINE.root_radius)}
 PLACED = {"eccentricity", "wobble", "scale_anisotropic", "stitch_step"}

@@ -352,6 +352,9 @@ def _wear(results: Results) -> Json:
             for region in wear.regions
         ],
         "burrs": [{"flanks": str(burr.side), "volume_mm3": value_std(burr.volume, burr.std)} for burr in wear.burrs],
+        "ridges": [
+            {"flanks": str(ridge.side), "height_um": value_std(1e3 * ridge.height, 1e3 * ridge.std)} for ridge in wear.ridges
+        ],
         "laws": [
             {
                 "name": law.name,

@@ -138,7 +138,7 @@ def _open(results: Results) -> bool:
         or results.open_volume.unsure_or_worn > 0.0
     )
     open_ = results.open_volume
-    return bool(results.wear.undecided) or open_.form_or_wear > 0.0 or even or open_.layered > 0.0
+    return bool(results.wear.undecided) or open_.form_or_wear > 0.0 or even or open_.layered > 0.0 or any(open_.ridge_or_thick)
 
 
 def _may_be(results: Results) -> str:
@@ -150,6 +150,8 @@ def _may_be(results: Results) -> str:
         question = "whether the teeth were cut thinner than drawn or are worn evenly"
         if results.open_volume.unsure_or_worn > 0.0:
             question = "how much the flanks that look worn have lost"
+        elif any(results.open_volume.ridge_or_thick):
+            question = "how high the worn flanks stood as they were made"
     return f"{question} the scan does not decide: it may be {_limits(results)}"
 
 
