@@ -221,7 +221,7 @@ class MeasuredGear(Card):
     @property
     def remarks(self) -> tuple[str, ...]:
         """Notes on how the numbers came about."""
-        smoothing = smoothing_of(self.located, self.placed.registration.noise, len(self.scans))
+        smoothing = smoothing_of(self.located, len(self.scans))
         if self.context.views_apart and not self.layered.any():
             smoothing = (VIEWS_MAY_LIE_APART,)
         sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)

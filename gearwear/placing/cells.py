@@ -18,9 +18,8 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
 from gearwear.design.twist import Segment, section_angle, segments
-from gearwear.placing.strays import LEAST_CENTRE_POINTS, near_centre
+from gearwear.placing.strays import near_centre
 from gearwear.placing.sums import CellSums
-from gearwear.robust import scale_about
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
@@ -32,8 +31,6 @@ FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 MAX_VARIANCE_RATIO = 4.0
 """Variance inside a cell, in that of the noise, above which something else than noise is in it."""
-ENOUGH_PAIRS, SIDES_LOOKED_AT = 300, 12
-"""Pairs of neighbours, and tooth sides, from which it is told whether points share their errors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -480,33 +477,3 @@ def noise(cells: Cells) -> float:
         calm = square <= MAX_VARIANCE_RATIO * level
         level = float((square * freedom)[calm].sum() / (share * freedom)[calm].sum())
     return math.sqrt(level)
-
-
-def shared_errors(points: SurfacePoints, noise: float) -> float:
-    """How much less neighbouring points of the flanks differ than points of a cell: 1 where their errors are their own, 0 where they share them.
-
-    Half the mean square of what a point differs from its nearest neighbour on the same tooth side (the variogram at the shortest distance) over
-    the variance inside cells, both robust. Smoothing and averaging leave points that share their errors with their neighbours.
-
-    Parameters
-    ----------
-    points : SurfacePoints
-        The located scan.
-    noise : float
-        Scatter of points inside cells, mm.
-    """
-    from scipy.spatial import cKDTree
-
-    at = np.flatnonzero(points.surface == FLANK)
-    if len(at) < ENOUGH_PAIRS or not noise > 0.0:
-        return 1.0
-    differences = []
-    for tooth in np.unique(points.tooth[at])[:SIDES_LOOKED_AT]:
-        side = at[(points.tooth[at] == tooth) & (points.side[at] > 0)]
-        if len(side) < LEAST_CENTRE_POINTS:
-            continue
-        near = cKDTree(points.position[side]).query(points.position[side], k=2)[1][:, 1]
-        differences.append(points.deviation[side] - points.deviation[side[near]])
-    if not differences or sum(map(len, differences)) < ENOUGH_PAIRS:
-        return 1.0
-    return float(scale_about(np.concatenate(differences)) ** 2 / 2.0 / noise**2)

@@ -9,10 +9,12 @@ from tempfile import mkdtemp
 import numpy as np
 
 import gearwear as gw
+from gearwear.comparison.placed_notes import SMOOTHED, smoothing_of
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import ALONE, compare
 from gearwear.report.words.terminal import lines
 from gearwear.report.words.verdict import doubts
+from tests.placing.test_smoothing import flanks, form, smoothed
 from tests.synthetic import Recipe, make_scan
 
 DESIGN = """[pinion]
@@ -57,3 +59,11 @@ def test_no_note_is_lost_or_said_twice():
     assert set(measured.notes) <= set(results().notes)
     assert len(set(results().notes)) == len(results().notes)
     assert measured.notes == (*measured.doubts, *measured.remarks)
+
+
+def test_a_scan_is_smoothed_where_its_points_share_their_errors_and_not_where_flanks_are_stepped():
+    points, errors = flanks()
+    stepped = points.with_deviation(0.006 * errors + form(points))
+    assert smoothing_of(stepped, 1) == ()
+    means = points.with_deviation(smoothed(points, 0.006 * errors, 6) + form(points))
+    assert smoothing_of(means, 1) == (SMOOTHED,) and smoothing_of(means, 2) == ()

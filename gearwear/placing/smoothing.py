@@ -1,0 +1,68 @@
+"""Whether neighbouring points share their errors, as those of a scan that was smoothed or averaged do."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.design.surface import FLANK, SurfacePoints
+
+PATCH_POINTS = 16
+"""Points of a patch of a flank, and up to as many again, less one: so few that form, wear and texture are its plane."""
+FEWEST_PATCHES, SIDES_LOOKED_AT = 20, 40
+"""Patches, and tooth sides, from which it is told whether points share their errors."""
+
+
+def shared_errors(points: SurfacePoints) -> float:
+    """How much less neighbouring points of the flanks differ than points of a patch: 1 where their errors are their own, 0 where they share them.
+
+    Of what the plane of a patch leaves, half the mean square of the differences to the nearest neighbour over the variance: von Neumann's ratio
+    (1941), whose mean is 1 for errors of their own whatever their size. The median over patches: an edge of wear goes through few of them.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        The located scan.
+    """
+    on = np.flatnonzero(points.surface == FLANK)
+    sides = 2 * points.tooth[on].astype(np.int64) + (points.side[on] > 0)
+    found = np.unique(sides)
+    # Evenly round the gear; an odd step takes both sides.
+    step = max(len(found) // SIDES_LOOKED_AT, 1) | 1
+    ratios = [ratio for side in found[::step] for ratio in _ratios(points.take(on[sides == side]))]
+    return float(np.median(ratios)) if len(ratios) >= FEWEST_PATCHES else 1.0
+
+
+def _ratios(flank: SurfacePoints) -> list[float]:
+    """Of the patches of one flank."""
+    from scipy.spatial import cKDTree
+
+    if len(flank) < PATCH_POINTS:
+        return []
+    at = np.stack([flank.roll, flank.position[:, 2]], axis=1)
+    nearest = cKDTree(flank.position).query(flank.position, k=2)[1][:, 1]
+    result, left = [], np.full(len(at), np.nan)
+    for patch in _patches(at):
+        plane = np.column_stack([np.ones(len(patch)), at[patch] - at[patch].mean(axis=0)])
+        fitted, _, rank, _ = np.linalg.lstsq(plane, flank.deviation[patch], rcond=None)
+        left[patch] = rest = flank.deviation[patch] - plane @ fitted
+        inside = np.isin(nearest[patch], patch)
+        square = float(rest @ rest) / (len(patch) - int(rank))
+        if inside.any() and square > 0.0:
+            apart = rest[inside] - left[nearest[patch[inside]]]
+            result.append(0.5 * float(np.mean(apart**2)) / square)
+    return result
+
+
+def _patches(at: Floats) -> list[Ints]:
+    """Points (n, 2) halved along the longer way until a half would be smaller than a patch."""
+    done: list[Ints] = []
+    todo: list[Ints] = [np.arange(len(at))]
+    while todo:
+        part = todo.pop()
+        if len(part) < 2 * PATCH_POINTS:
+            done.append(part)
+            continue
+        order = part[np.argsort(at[part, int(np.argmax(np.ptp(at[part], axis=0)))], kind="stable")]
+        todo += [order[: len(part) // 2], order[len(part) // 2 :]]
+    return done
