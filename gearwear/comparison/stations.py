@@ -421,7 +421,7 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
     untold = 0.0 if loop.untold is None else gear.arc_per_depth * loop.untold.level.sum(axis=1, keepdims=True)
     # Between the places that were measured a tooth is as thin as it was made, and no thinner for what the scanner may have done.
     return replace(
-        result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE)) + untold), made=arc(loop.surely_made) + untold,
+        result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE)) + untold).made_with(arc(loop.surely_made) + untold),
         otherwise=(sum(min(change, 0.0) for change in other), sum(max(change, 0.0) for change in other)),
     )  # fmt: skip
 

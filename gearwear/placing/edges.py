@@ -48,12 +48,25 @@ def rounded_ends(cells: Cells, noise: float) -> Bools:
 
 
 def typical_fall(flanks: Floats) -> Floats:
-    """How much typical flanks of (teeth, 2, rows, ...) lie lower, or higher, than in the middle half of the face, (2, rows, ...); nan where not seen."""
+    """How much typical flanks of (teeth, 2, rows, ...) lie lower, or higher, than the face goes on from its middle half, (2, rows, ...); nan where not seen.
+
+    It goes on level or along the straight line through the middle half, whichever is lower: teeth that taper, as moulded ones do, have no edge at their
+    thin end, and nothing is low for a slope of the middle alone.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
         typical = np.nanmedian(flanks, axis=0)
-        quarter = _quarter(typical.shape[1])
-        return np.asarray(typical - np.nanmedian(typical[:, quarter : typical.shape[1] - quarter], axis=1, keepdims=True))
+        rows = typical.shape[1]
+        quarter = _quarter(rows)
+        height = np.broadcast_to(np.arange(rows, dtype=np.float64).reshape(-1, *[1] * (typical.ndim - 2)), typical.shape)
+        seen, middle = np.where(np.isnan(typical), np.nan, height), slice(quarter, rows - quarter)
+        fall = typical - np.nanmedian(typical[:, middle], axis=1, keepdims=True)
+        half = (rows - 2 * quarter) // 2
+        halves = [slice(quarter, quarter + half), slice(rows - quarter - half, rows - quarter)]
+        rise, run = (
+            np.subtract(*(np.nanmedian(values[:, part], axis=1, keepdims=True) for part in halves)) for values in (typical, seen)
+        )
+        return np.asarray(np.fmax(fall, fall - rise / run * (height - np.nanmedian(seen[:, middle], axis=1, keepdims=True))))
 
 
 def least_drop(module: float, noise: float) -> float:

@@ -80,7 +80,7 @@ class SectionThickness(Card):
         How well is known how thick each tooth was made, mm of arc: it is in what was lost, and not in what is left. None: no less well than all.
     drawn, made : (teeth, n_z) float or None
         Arc as it is drawn, and what effects of the maker add to it, mm: both are known between the places that are measured and up to the ends of the
-        face. Pooled sections are about the drawn arc in their middle, and hold the mean of what was made otherwise. None: the same in all sections.
+        face, so that pooled sections are about both in their middle. None: the same in all sections.
     otherwise : (float, float)
         How much thinner (≤ 0) and thicker (≥ 0) all teeth are, mm of arc, were effects that are taken for made or measured of the other kind, where the
         scan does not tell: a coat for thick teeth.
@@ -147,6 +147,14 @@ class SectionThickness(Card):
         """The same measurement with errors beside the noise of the points: see `texture`, `texture_step` and `common_std`."""
         return replace(self, texture=texture, texture_step=step, common_std=math.hypot(self.common_std, common_std))
 
+    def made_with(self, made: Floats) -> SectionThickness:
+        """The same measurement with what effects of the maker add, (teeth, n_z) mm: an arc over pooled sections is that in their middle, also where the
+        window ends with the face."""
+        mean = np.empty_like(made)
+        for tooth, width in enumerate(self.widths.tolist()):
+            mean[tooth] = _running_sum(made[tooth], width) / _running_sum(np.ones(made.shape[1]), width)
+        return replace(self, arc=self.arc + (made - mean), made=made)
+
     @property
     def widths(self) -> Ints:
         """(teeth,) sections whose points are taken together."""
@@ -175,7 +183,7 @@ class SectionThickness(Card):
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
         drawn, made = (np.zeros_like(arc) if one is None else one for one in (drawn, made))
         mean_drawn, mean_made, thinnest, drawn_there = _about_places(place, widths, drawn, made)
-        lost, section_std = np.where(place >= 0, arc[index] - drawn[index] - mean_made, np.nan), self.std[index]
+        lost, section_std = np.where(place >= 0, arc[index] - drawn[index] - made[index], np.nan), self.std[index]
         curves = lost + thinnest
         known = np.zeros(teeth, dtype=np.bool_)
         if self.hollows is not None:

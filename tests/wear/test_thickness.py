@@ -201,6 +201,43 @@ def test_ends_that_are_relieved_as_drawn_are_in_the_least(points):
     assert np.median(std) < 0.01
 
 
+def tapering(points: int, taper: float, rounding: float = 0.0) -> SectionThickness:
+    """Of flanks that all fall by so much towards the low end of the face, mm, and that are rounded off there within a millimetre."""
+    random = np.random.default_rng(2)
+    tooth, side = random.integers(0, 12, points), random.choice([1, -1], points)
+    roll, z = random.uniform(GEAR.form_roll, GEAR.tip_roll, points), random.uniform(0.0, 15.0, points)
+    off = taper * (z / 15.0 - 0.5) - rounding * np.maximum(1.0 - z, 0.0) ** 2 + 0.005 * random.normal(size=points)
+    return section_thickness(flank_points(GEAR, tooth, side, roll, z).with_deviation(off), GEAR, 0.005)
+
+
+def test_teeth_that_taper_are_seen_up_to_their_thin_end():
+    """A draft of 0.6°, as of moulded teeth, is no rounded edge; what is rounded off such a tooth is one."""
+    taper = 0.16
+    found, rounded = tapering(150_000, taper), tapering(150_000, taper, 0.3)
+    truth = nominal_arc(R) + 2.0 * R / RB * taper * (found.z / 15.0 - 0.5)
+    assert (np.isfinite(found.arc).mean(axis=0) > 0.7).all()  # a half section may have fewer than three points
+    # The outermost sections are half: their points lie a quarter of a step further in.
+    assert np.nanmax(np.abs((found.arc - truth) / found.std)) < 4.5 + 0.05 * 2.0 * taper * R / RB / 15.0 / np.nanmin(found.std)
+    seen = np.isfinite(rounded.arc).mean(axis=0)
+    assert not seen[:2].any() and (seen[6:] > 0.7).all()
+
+
+def test_pooled_arcs_of_teeth_that_are_known_to_taper_are_those_of_their_heights():
+    """At an end the window is half, and its mean that of a place further in: told as the place itself it was 16 µm too thick."""
+    taper = 0.16
+    found = tapering(6_000, taper)
+    made = np.broadcast_to(2.0 * R / RB * taper * (found.z / 15.0 - 0.5), found.arc.shape)
+    known = found.made_with(made)
+    assert found.pooled > 3
+    off, std = np.nanmean(known.arc - nominal_arc(R) - made, axis=0), np.sqrt(np.nanmean(found.std**2, axis=0) / 12.0)
+    assert np.abs(off[[0, -1]] / std[[0, -1]]).max() < 4.0
+    assert abs(np.nanmean(found.arc - nominal_arc(R) - made, axis=0)[0]) > 8.0 * std[0]
+    inside = slice(found.pooled // 2, -(found.pooled // 2))
+    np.testing.assert_allclose(known.arc[:, inside], found.arc[:, inside], rtol=0.0, atol=1e-12)  # the windows are whole there
+    worn = known.thinnest()
+    assert worn is not None and worn.low <= nominal_arc(R) - R / RB * taper <= worn.high
+
+
 def test_a_tooth_seen_from_one_side_has_no_thickness():
     flanks = even_flanks(np.zeros(12), np.zeros(12))
     found = section_thickness(flanks.take((flanks.tooth != 3) | (flanks.side > 0)), GEAR, 0.005)
