@@ -75,6 +75,7 @@ MUTATIONS = [
         ("wear/thickness.py", "min(to_end / width, 0.5)", "0.0", "wear/test_thickness.py"),
         ("wear/thickness.py", "arc=self.arc + (made - mean)", "arc=self.arc", "wear/test_thickness.py"),
         ("placing/edges.py", "np.fmax(fall, fall - rise / run", "np.fmin(fall, fall - rise / run", "placing/test_edges.py"),
+        ("wear/thickness.py", "NOISIER, CHANCE = 0.1, 4.0", "NOISIER, CHANCE = -1.0, 0.0", "wear/test_thickness.py"),
         ("wear/thickness.py", "curves = lost + thinnest", "curves = lost + mean_drawn + mean_made", "wear/test_thickness.py"),
         ("wear/surface.py", "DRAWS, PLACES = 200, 2", "DRAWS, PLACES = 2, 2", "wear/test_surface.py"),
         ("diagnose/judge.py", "extra <= rules().more_parameters", "extra <= rules().more_parameters + 2", "diagnose/test_judge.py"),

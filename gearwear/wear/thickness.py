@@ -32,6 +32,9 @@ MEAN_OF = 5
 LEAST_SHARE_AT_ENDS = 0.5
 """Share of the points usual in a section that one at an end of the face must have on most teeth: flanks that end askew or are rounded off stop
 short of it, and what is seen there is the edge."""
+NOISIER, CHANCE = 0.1, 4.0
+"""Share, and standard deviations, by which points of sections must scatter more than those of all flanks and fillets to have a noise of their own; of
+the variance."""
 SLOPED = 2.0
 """Standard deviations, of their difference, that two means may differ by for having looked for the less of them."""
 FEWEST_POINTS = 6
@@ -59,7 +62,7 @@ class SectionThickness(Card):
     std : (teeth, n_z) float
         Standard deviation of `arc` by the noise, mm.
     noise : float
-        Scatter of points, mm.
+        Scatter of the points of sections, mm.
     as_made : (teeth, n_z) float
         Arc of the gear as it was made, mm: what a loss is measured from. The nominal one unless `against` says otherwise.
     pooled : int
@@ -362,6 +365,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     starts = np.concatenate([rows.start + _starts(rows.stop - rows.start, pooled) for rows in stretches])
     straight, ridge_std = without_ridge(moments, starts, noise, band.half)
     flank, variance, count, scatter, on = _line_at(straight, band.half, stretches, pooled)
+    noise = _own_noise(scatter, count, noise, pooled)
     for rows in stretches:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
@@ -455,6 +459,20 @@ def _line_at(
         about = syy - n * mean_y**2 - slope * np.where(sloped, sxy - n * mean_x * mean_y, 0.0)
         scatter = np.where(n >= LEAST_POINTS, about / (n - np.where(sloped, 2.0, 1.0)), 0.0)
     return value, variance, n, scatter, on
+
+
+def _own_noise(scatter: Floats, count: Floats, noise: float, pooled: int) -> float:
+    """Noise of the points of sections, where it is more than that of all points, mm: scanners scatter more on steep flanks than on fillets.
+
+    By the lower quartile of their variances (Wilson and Hilferty 1931): where few places scatter more it is wear.
+    """
+    enough = count >= FEWEST_POINTS
+    if not enough.any():
+        return noise
+    free = 2.0 / (9.0 * (count[enough] - 2.0))
+    own = float(np.quantile(scatter[enough] / (1.0 - free - 0.6745 * np.sqrt(free)) ** 3, 0.25))
+    chance = 1.36 * math.sqrt(2.0 * pooled / float((count[enough] - 2.0).sum()))  # of a quartile
+    return math.sqrt(own) if own > (1.0 + NOISIER + CHANCE * chance) * noise**2 else noise
 
 
 def _sections_to_pool(count: Floats, stretches: Sequence[slice]) -> int:
