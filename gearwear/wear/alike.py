@@ -36,7 +36,7 @@ def alike(depth: Floats, own_std: Floats, mean: Floats, mean_std: Floats, apart:
     Empirical Bayes (Efron and Morris 1975): greatest depths are N(R mean, τ²) with R and τ² as the flanks show them; what a flank shows beyond R mean counts
     with τ² / (τ² + s²). That τ² is known from n flanks alone is in the result (Morris 1983).
     """
-    known = np.isfinite(depth) & np.isfinite(own_std) & (own_std > 0.0)
+    known = np.isfinite(depth) & np.isfinite(own_std) & (own_std > 0.0) & (mean > 0.0)
     value, std = depth.copy(), own_std.copy()
     if known.sum() < FEWEST:
         return value, np.hypot(std, apart)
