@@ -166,7 +166,7 @@ MUTATIONS = [
         ("wear/made_apart.py", "FEWEST_FLANKS = 6", "FEWEST_FLANKS = 60", "wear/test_made_apart.py"),
         ("wear/made_apart.py", "MOST_SHARE = 0.9", "MOST_SHARE = 0.0", "wear/test_made_apart.py"),
         ("wear/made_apart.py", "scatter**2 > chance * chdtri(free, ALARM) / free", "scatter**2 > 0.0 * chance", "wear/test_made_apart.py"),
-        ("wear/alike.py", "APART = 4.0", "APART = 4000.0", "wear/test_alike.py"),
+        ("wear/alike.py", "APART = 3.0", "APART = 3000.0", "wear/test_alike.py"),
         ("wear/alike.py", "FEWEST = 6", "FEWEST = 4", "wear/test_alike.py"),
         ("wear/alike.py", "share * apart + (1.0 - share) * ratio * mean_std[among]", "0.0 * share", "wear/test_alike.py"),
         ("wear/volume.py", "own -= own.mean(axis=2, keepdims=True)", "own -= 0.0", "wear/test_made_apart.py"),

@@ -42,7 +42,8 @@ def few_rows(grid: CellGrid) -> CellGrid:
 
 def few_teeth(grid: CellGrid, points: SurfacePoints) -> Bools:
     """Points on every n-th tooth, and off the teeth, where a grid with few rows has n times as many cells as are needed."""
-    kept: Bools = (points.tooth % max(1, round(grid.count / ENOUGH_CELLS)) == 0) | (points.surface > TIP)
+    every = max(1, round(grid.count / ENOUGH_CELLS))
+    kept: Bools = (points.tooth % every == 0) | (points.surface > TIP)
     return kept
 
 

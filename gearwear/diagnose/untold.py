@@ -37,10 +37,8 @@ def with_untold(loop: Loop, cells: Cells) -> Loop:
     number = np.bincount(which[on], minlength=flanks)
     share = np.bincount(which[on], loop.use[on], minlength=flanks) / np.maximum(number, 1)
     worn = np.isin(np.arange(flanks) % len(Side), [side.index for side in loop.worn_sides])  # `made` is their doubt
-    hidden, sound = (
-        np.flatnonzero((number > 0) & (share < rules().untold_flank) & ~worn),
-        np.flatnonzero((share > rules().sound_flank) & ~worn),
-    )
+    hidden = np.flatnonzero((number > 0) & (share < rules().untold_flank) & ~worn)
+    sound = np.flatnonzero((share > rules().sound_flank) & ~worn)
     own = [i for i, found in enumerate(loop.effects) if isinstance(found.candidate.effect, EachTooth)]
     if not (len(hidden) and len(sound) and own):
         return loop

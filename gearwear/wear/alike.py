@@ -13,10 +13,8 @@ from gearwear.robust import scale_about
 
 FEWEST = 6
 """Flanks from which on they tell what they have in common."""
-APART = 4.0
+APART = 3.0
 """Own standard deviations beyond which a flank has a place of its own, deeper than what all have, and is left as it is."""
-ROUNDS = 10
-"""Of leaving flanks out that are apart; numerical."""
 
 
 def alike(depth: Floats, own_std: Floats, mean: Floats, mean_std: Floats, apart: float = 0.0) -> tuple[Floats, Floats]:
@@ -41,19 +39,14 @@ def alike(depth: Floats, own_std: Floats, mean: Floats, mean_std: Floats, apart:
     if known.sum() < FEWEST:
         return value, np.hypot(std, apart)
     middle = float(np.median(depth[known] / mean[known]))
-    spread = scale_about((depth - middle * mean)[known]) ** 2
-    among = known & (np.abs(depth - middle * mean) < APART * np.sqrt(spread + own_std**2))
-    for _ in range(ROUNDS):
-        if among.sum() < FEWEST:
-            return value, np.hypot(std, apart)
-        weight = np.where(among, 1.0 / np.maximum(own_std, 1e-12) ** 2, 0.0)
-        information = float(weight @ mean**2)
-        ratio = float(weight @ (depth * mean)) / information
-        beyond = np.abs(depth - ratio * mean)
-        spread = max(float(np.mean(beyond[among] ** 2 - own_std[among] ** 2)), 0.0)
-        before, among = among, known & (beyond < APART * np.sqrt(spread + own_std**2))
-        if (before == among).all():
-            break
+    beyond = depth - middle * mean
+    spread = max(scale_about(beyond[known]) ** 2 - float(np.median(own_std[known] ** 2)), 0.0)
+    among = known & (np.abs(beyond) < APART * np.sqrt(spread + own_std**2))
+    if among.sum() < FEWEST:
+        return value, np.hypot(std, apart)
+    weight = np.where(among, 1.0 / (spread + np.maximum(own_std, 1e-12) ** 2), 0.0)
+    information = float(weight @ mean**2)
+    ratio = float(weight @ (depth * mean)) / information
     share = spread / (spread + own_std[among] ** 2)
     more = (depth - ratio * mean)[among]
     value[among] = ratio * mean[among] + share * more
@@ -61,4 +54,6 @@ def alike(depth: Floats, own_std: Floats, mean: Floats, mean_std: Floats, apart:
     std = np.hypot(std, apart)
     unknown = mean[among] ** 2 / information + 2.0 * more**2 / (among.sum() - 3)
     std[among] = np.sqrt(share * own_std[among] ** 2 + (1.0 - share) ** 2 * unknown + by_level**2)
+    # A place of its own that does not stand out is half of it in doubt.
+    std[among] = np.maximum(std[among], 0.5 * np.abs((1.0 - share) * more))
     return value, std

@@ -71,24 +71,21 @@ def lay_flat(cells: Cells, noise: float, loop: Loop | None, worn: frozenset[Side
         filled = infill(sheets)
         taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
         cells = cells.with_deviation(cells.points.deviation + taken)
-    proud, level_open, ridges = standing_proud(sheets, loop, worn), (0.0, 0.0), list[PitchRidge]()
-    raised = np.zeros((len(Side), *sheets.count.shape[2:]))
-    for side in Side:
-        if loop is None or proud[side.index] <= 0.0:
-            continue
+    proud, level = standing_proud(sheets, loop, worn), None
+    if loop is not None and any(proud):  # of one side at most
+        (side,) = worn
         level = worn_level(sheets, cells.grid, loop, side, proud[side.index])
+        proud = (level.height, 0.0) if side is Side.LEFT else (0.0, level.height)
+        raised = np.zeros((len(Side), *sheets.count.shape[2:]))
         raised[side.index] = level.height
         raised[side.index, :, sheets.fillet :] += level.proud
-        level_open = (level.height - level.low, level.high - level.height)
-        ridges += [] if level.ridge is None else [level.ridge]
-        proud = (level.height, 0.0) if side is Side.LEFT else (0.0, level.height)
-    if raised.any():
         cells = cells.with_deviation(cells.points.deviation - cells.grid.on_cells(np.broadcast_to(raised, sheets.count.shape)))
         sheets = make_side_maps(cells)
         filled = infill(sheets)
     return LaidFlat(
-        cells=cells, sheets=sheets, filled=filled, burrs=burrs, burr_std=burr_std, proud=proud, level_open=level_open, ridges=tuple(ridges),
-        perhaps=perhaps,
+        cells=cells, sheets=sheets, filled=filled, burrs=burrs, burr_std=burr_std, proud=proud,
+        level_open=(0.0, 0.0) if level is None else (level.height - level.low, level.high - level.height),
+        ridges=() if level is None or level.ridge is None else (level.ridge,), perhaps=perhaps,
     )  # fmt: skip
 
 

@@ -310,8 +310,9 @@ def _alike(regions: list[WearRegion], common: Floats, worn: frozenset[Side], apa
     own = np.sqrt(np.maximum(each("max_depth_std") ** 2 - shared**2 - level**2, 0.0))
     mean_std = np.sqrt(np.maximum((each("volume_std") / each("area")) ** 2 - shared**2, 0.0))
     value, own = alike(each("max_depth"), own, each("mean_depth"), mean_std, level)
+    # No less than what the flank says of itself: looking for its deepest place is wrong alike on all, by about as much.
     return [
-        replace(one, max_depth=float(deep), max_depth_std=math.hypot(known, shared))
+        replace(one, max_depth=float(deep), max_depth_std=max(math.hypot(known, shared), one.max_depth_std))
         for one, deep, known in zip(regions, value, own, strict=True)
     ]
 
