@@ -23,7 +23,7 @@ from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import ToothCompliance, tooth_compliance
 from gearwear.meshing.passes import CYCLES, Cycle
-from gearwear.meshing.slices import common_width
+from gearwear.meshing.slices import common_width, uneven_across_face
 from gearwear.threads import on_one_thread
 
 COUPLINGS = (1.0, 1.4)
@@ -212,10 +212,9 @@ def study_load(
     material = Material(stated.elastic_modulus, stated.poisson)
     teeth = (tooth_compliance(pinion, material), tooth_compliance(gear, material))
     models = compliance_models(teeth, material)
-    uneven = pinion.twist != 0.0 or pinion.modified_along_face or gear.modified_along_face
     nominal = (nominal_profiles(pinion), nominal_profiles(gear))
     (designed, *other_designs), _ = loaded_variants(
-        *nominal, centre, force, models, drive_side, slices=SLICES if uneven else 1, cycle="pitch"
+        *nominal, centre, force, models, drive_side, slices=SLICES if uneven_across_face(pinion, gear) else 1, cycle="pitch"
     )
     (present, *others), by_flanks = loaded_variants(
         *(nominal if flanks is None else flanks), centre, force, models, drive_side,

@@ -132,6 +132,11 @@ def common_face(gear: Gear, mate: Gear) -> list[tuple[float, float]]:
     return [(-outer, outer)] if inner == 0.0 else [(-outer, -inner), (inner, outer)]
 
 
+def uneven_across_face(gear: Gear, mate: Gear) -> bool:
+    """Whether a pair as drawn touches otherwise at one height than at another: by a helix, or flanks modified along the face."""
+    return gear.twist != 0.0 or gear.modified_along_face or mate.modified_along_face
+
+
 def common_width(gear: Gear, mate: Gear) -> float:
     """Width of the face that both gears have, mm, without the groove of double helical ones."""
     return sum(high - low for low, high in common_face(gear, mate))

@@ -15,7 +15,7 @@ from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import tooth_compliance
 from gearwear.loaded.wearing import run_wear
 from gearwear.meshing.path import path_of_contact
-from gearwear.meshing.slices import SAME_HEIGHT, FaceParts, common_width
+from gearwear.meshing.slices import SAME_HEIGHT, FaceParts, common_width, uneven_across_face
 from gearwear.running.wear_map import WearMap
 
 POSITIONS = 32
@@ -89,14 +89,19 @@ class Runs:
         """(MOMENTS,) k N at which a run is kept, mm²/N."""
         return np.linspace(0.0, self.longest, MOMENTS)
 
+    @property
+    def _uneven(self) -> bool:
+        """Whether flanks carry unevenly across the face though nothing is askew."""
+        return uneven_across_face(self.map.gear, self.mate)
+
     def of(self, conditions: Conditions) -> Floats:
         """(MOMENTS, m) depth at the places of the map, mm."""
         if conditions not in self.kept:
             depth = self._run(conditions)
             over = over_common_face(self.map, self.mate, depth.shape[1])
             self.kept[conditions] = over @ depth
-            # A gap that opens the other way wears spur flanks the other way up; a helix has no such mirror.
-            if self.map.gear.twist == 0.0:
+            # A gap that opens the other way wears spur flanks the other way up; a helix, or one that is drawn, has no such mirror.
+            if not self._uneven:
                 mirrored = replace(conditions, misalignment=-conditions.misalignment)
                 self.kept[mirrored] = over @ depth[:, ::-1]
         return self.kept[conditions][:, self.map.seen]
@@ -111,7 +116,7 @@ class Runs:
             conditions.softness,
         )
         # Alike across the face, one slice tells it all.
-        slices = self.map.slices if gear.twist != 0.0 or conditions.misalignment != 0.0 else 1
+        slices = self.map.slices if self._uneven or conditions.misalignment != 0.0 else 1
         states = run_wear(
             gear, self._made(conditions), self.centre_distance, self.load_per_width * width, elastic,
             self.amounts.tolist(), conditions.mate_rate, self.map.side,

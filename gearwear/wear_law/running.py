@@ -20,7 +20,7 @@ from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, co
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import tooth_compliance
 from gearwear.loaded.wearing import WearMember, run_wear, run_wear_ensemble
-from gearwear.meshing.slices import common_width
+from gearwear.meshing.slices import common_width, uneven_across_face
 from gearwear.threads import on_one_thread
 from gearwear.wear_law.fit import WearFit, check_confidence
 from gearwear.wear_law.forecast import Band, FlankState, Quantity, WearForecast, forecast_by
@@ -46,7 +46,7 @@ _MOMENTS = 41
 _PLACES = 200
 """Amounts of wear so far that are weighed in each run."""
 _POSITIONS, _POSITIONS_UNEVEN, _SLICES, _SLICES_HELICAL = 72, 32, 5, 6
-"""Positions a pitch of a pair alike across its face and of others, askew or helical, and slices of these."""
+"""Positions a pitch of a pair alike across its face and of others, askew, helical or modified along it, and slices of these."""
 _SMOOTHING_CELLS = 2.0
 """Cells along the flank over which a run is smoothed: finite steps leave it rough, and a contact is wider than a cell."""
 _REACH = 1.4
@@ -121,14 +121,14 @@ def run_histories(
     Returns
     -------
     tuple of WearHistory
-        The middle compliance is that of plane finite elements; the depth of a misaligned or helical pair is the mean over its face.
+        The middle compliance is that of plane finite elements; the depth of a pair that is misaligned, helical or modified along the face is the mean over it.
     """
     from scipy.ndimage import gaussian_filter1d
 
     steel = Material() if material is None else material
     teeth, times = (tooth_compliance(gear, steel), tooth_compliance(mate, steel)), np.linspace(0.0, longest, _MOMENTS)
-    helical = gear.twist != 0.0
-    uneven = helical or misalignment != 0.0
+    as_drawn = uneven_across_face(gear, mate)
+    uneven = as_drawn or misalignment != 0.0
     best = PairCompliance(teeth, steel, coupling_length(gear, COUPLING_MODULES) if uneven else 0.0)
     scales = sorted({STIFFNESSES[0], STIFFNESSES[-1]}) if uneven else STIFFNESSES
     members = [WearMember(replace(best, scale=scale), rate) for scale in scales for rate in MATE_RATES]
@@ -136,11 +136,13 @@ def run_histories(
     for corners in (True, False):
         if uneven:
             force = load_per_width * common_width(gear, mate)
-            gap = misalignment if helical else abs(misalignment)  # a spur flank is worn the other way up, alike in the mean
+            gap = (
+                misalignment if as_drawn else abs(misalignment)
+            )  # a plain spur flank is worn the other way up, alike in the mean
             runs = [
                 run_wear(
                     gear, mate, centre_distance, force, member.compliance, times.tolist(), member.mate_rate, side,
-                    misalignment=gap * (1.0 + member.mate_rate), slices=_SLICES_HELICAL if helical else _SLICES,
+                    misalignment=gap * (1.0 + member.mate_rate), slices=_SLICES_HELICAL if gear.twist != 0.0 else _SLICES,
                     positions_per_pitch=_POSITIONS_UNEVEN, corners=corners,
                 )
                 for member in members

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import gearwear as gw
+from gearwear.design.gear import Gear
+from gearwear.design.modification import FlankModification
 from gearwear.errors import InputError
 from gearwear.wear_law import running
 from gearwear.wear_law.fit import fit_wear_law
@@ -136,3 +140,17 @@ def test_bad_input_is_named(histories):
         forecast_by_running(fit, 1e6, np.array([2e6]), 0.0)
     with pytest.raises(InputError, match="cycles not below those run"):
         forecast_by_running(fit, 1e6, np.array([5e5]), LOAD)
+
+
+def test_what_the_drawing_modifies_along_the_face_is_run_with(monkeypatch):
+    """A lean of the mate is a gap: the mean over the face is that of a plain pair askew by as much."""
+    monkeypatch.setattr(running, "MATE_RATES", (0.0,))
+    monkeypatch.setattr(running, "STIFFNESSES", (1.0,))
+    monkeypatch.setattr(running, "_MOMENTS", 3)
+    pinion, gear, centre = PAIR
+    lean = FlankModification(helix_slope=0.03)
+    leaning = Gear.from_spec(replace(gear.spec, left=lean, right=lean))
+    longest = 0.4 * SINGLE / LOAD
+    askew = run_histories(*PAIR, LOAD, longest, misalignment=0.03)
+    for as_drawn, plain in zip(run_histories(pinion, leaning, centre, LOAD, longest), askew, strict=True):
+        assert as_drawn.depth == pytest.approx(plain.depth, abs=1e-8)
