@@ -78,7 +78,7 @@ def along_screw(pose: Pose, gear: Gear, height: float) -> Pose:
 
 
 def flip(face_width: float) -> Pose:
-    """Half a turn about x and back up: swaps the ends of a gear of this face width (mm), keeps tooth 1 on +x."""
+    """Half a turn about x and back up: swaps the ends of a gear of this face width (mm), and left and right; keeps tooth 1 on +x."""
     return Pose(np.diag([1.0, -1.0, -1.0]), np.array([0.0, 0.0, face_width]))
 
 
@@ -93,10 +93,11 @@ def motion_columns(position: Floats, normal: Floats) -> Floats:
     return np.hstack([normal, np.cross(position, normal)])
 
 
-def least_turn(pose: Pose, gear: Gear, reference: Pose) -> Pose:
-    """Of the 2 z poses a gear's symmetry leaves, the one that turns least from `reference`; of a double helical gear z, whose hands tell its ends."""
+def least_turn(pose: Pose, gear: Gear, reference: Pose, way_up_told: bool = False) -> Pose:
+    """Of the 2 z poses a gear's symmetry leaves, the one that turns least from `reference`; of the z where the way up is told, as by the hands of a
+    double helical gear."""
     best, least = pose, _turn_between(pose, reference)
-    ends = (pose,) if gear.spec.gap > 0.0 else (pose, pose.then(flip(gear.face_width)))
+    ends = (pose,) if way_up_told or gear.spec.gap > 0.0 else (pose, pose.then(flip(gear.face_width)))
     for upside in ends:
         # The trace of R_z(a) R is cos a (Rxx + Ryy) + sin a (Rxy − Ryx) + Rzz: greatest at this angle.
         r = upside.rotation @ reference.rotation.T

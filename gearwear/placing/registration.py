@@ -30,7 +30,7 @@ from gearwear.placing.coarse import (
     take_sample,
 )
 from gearwear.placing.datum import Datum, choose_datum
-from gearwear.placing.pose import Pose, along_screw, least_turn, motion_columns, small_motion
+from gearwear.placing.pose import Pose, along_screw, flip, least_turn, motion_columns, small_motion
 from gearwear.placing.screw import helical_axes
 from gearwear.processors import each
 from gearwear.robust import median_scale, tukey_slope, tukey_weight
@@ -179,9 +179,11 @@ def rough_pose(
             best = _best_fit(thin, gear, coarse_poses(sample, gear, _axes(sample, gear)), free, best)
         if best[0] > MAX_QUICK_COST and sample is not None:
             best = _best_fit(thin, gear, coarse_poses(sample, gear, [axis_of_inertia(sample)]), free, best)
-    pose = best[1]
-    pose = _settle(_thinned(points, SETTLING_POINTS, seed=2), gear, pose, free)
-    return least_turn(pose, gear, start or Pose.identity())
+    thin = _thinned(points, SETTLING_POINTS, seed=2)
+    pose = _settle(thin, gear, best[1], free)
+    if planar or start is not None or gear.spec.left == gear.spec.right:
+        return least_turn(pose, gear, start or Pose.identity())
+    return least_turn(_drawn_way_up(thin, gear, pose, free), gear, Pose.identity(), way_up_told=True)
 
 
 def _axes(sample: Sample, gear: Gear) -> list[Floats]:
@@ -223,6 +225,18 @@ def _settle(points: Floats, gear: Gear, pose: Pose, free: Bools) -> Pose:
         if step < 2e-5 * gear.transverse_module:
             break
     return pose
+
+
+def _drawn_way_up(points: Floats, gear: Gear, pose: Pose, free: Bools) -> Pose:
+    """`pose`, or the same upside down, which makes each flank one of the other side: whichever the drawing fits, where it tells the sides apart."""
+
+    def misfit(lay: Pose) -> float:
+        """Mean distance of flanks from their own middle, mm, of the side that fits better: the other may be worn."""
+        located, far = locate(lay.apply(points), gear), 0.06 * gear.transverse_module
+        sides = [located.deviation[(located.surface == FLANK) & (located.side == side)] for side in Side]
+        return min((float(np.minimum(np.abs(off - np.median(off)), far).mean()) for off in sides if len(off)), default=np.inf)
+
+    return min((pose, _settle(points, gear, pose.then(flip(gear.face_width)), free)), key=misfit)
 
 
 def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: float) -> tuple[Pose, float]:
