@@ -131,13 +131,13 @@ def _deepest(wear: Wear) -> float:
 def thickness_changes(
     measured: MeasuredGear, effects: Sequence[PutBack], after: SectionThickness, before: SectionThickness
 ) -> tuple[Change, ...]:
-    """Mean and least tooth thickness at the reference circle."""
+    """Mean and least tooth thickness, as arcs where it is measured."""
     if not (np.isfinite(after.arc) & np.isfinite(before.arc)).any():
         return ()
     made = np.where(np.isfinite(after.arc), after.as_made, np.nan)  # without noise: its least is no less than it is
     added = arc_fields(measured, [effect for effect in effects if effect.kind in MEASURED], after.z)
     alone = {name: replace(after, arc=after.arc + arc) for name, arc in added.items()}
-    level = sum(measured.level_std) * measured.gear.reference_radius / measured.gear.normal_lever
+    level = sum(measured.level_std) * measured.gear.thickness_radius / measured.gear.normal_lever
     # In another pose other points fall into a section: a mean is not moved by that, a single section is.
     other = float(np.nanstd(before.arc - after.arc - sum(added.values(), np.zeros(after.arc.shape))))
     near = 2.0 * after.pooled * float(np.median(np.diff(after.z))) if len(after.z) > 1 else math.inf

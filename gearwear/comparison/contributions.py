@@ -106,10 +106,10 @@ def cell_fields(measured: MeasuredGear, effects: Iterable[PutBack], cells: Cells
 
 
 def arc_fields(measured: MeasuredGear, effects: Iterable[PutBack], z: Floats) -> dict[str, Floats]:
-    """By name, what each effect adds to the arc at the reference circle in sections, (teeth, n_z) mm."""
+    """By name, what each effect adds to the arc of a tooth in sections, (teeth, n_z) mm."""
     gear = measured.gear
     tooth, height = np.repeat(np.arange(gear.teeth), len(z)), np.tile(z, gear.teeth)
-    roll = np.full(len(tooth), gear.reference_roll)
+    roll = np.full(len(tooth), gear.thickness_roll)
     left, right = (by_name(effects, flank_points(gear, tooth, np.full(len(tooth), side), roll, height)) for side in Side)
     ratio = gear.arc_per_depth
     return {name: (ratio * (left[name] + right[name])).reshape(gear.teeth, -1) for name in left}

@@ -206,6 +206,7 @@ def compare(
             *((SECTION_WEIGHED,) if design.weighing is not None and planar else ()),
             *load_left_out(design),
             *_no_forecast(pair, ahead),
+            *_off_reference(gear),
             *dict.fromkeys((*measured.remarks, *design.warnings)),  # an assumed root is said by both
             *((HALVES,) if gear.spec.gap > 0.0 else ()),
             *(() if pair is not None else (ALONE,)),
@@ -338,6 +339,15 @@ def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def _off_reference(gear: Gear) -> tuple[str, ...]:
+    """Where thickness is measured, if not at the reference circle."""
+    if gear.thickness_radius == gear.reference_radius:
+        return ()
+    return (
+        f"the reference circle, ⌀ {2.0 * gear.reference_radius:.4g} mm, lies off the involute: tooth thickness is that at ⌀ {2.0 * gear.thickness_radius:.4g} mm",
+    )
+
+
 def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...]:
     """Why there is no forecast, where one was asked for."""
     if ahead is None:
@@ -411,7 +421,7 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
     result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), float(common))
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
-    roll = np.full(len(tooth), gear.reference_roll)
+    roll = np.full(len(tooth), gear.thickness_roll)
     flanks = [flank_points(gear, tooth, np.full(len(tooth), side), roll, z) for side in (1, -1)]
 
     def arc(of: Callable[[SurfacePoints], Floats]) -> Floats:
@@ -465,12 +475,12 @@ def _running(
 
 
 def _unexplained(measured: MeasuredGear) -> float:
-    """What the patterns that no effect explains add up to on both sides of a tooth at the reference circle, RMS over the gear, mm: whether they are
+    """What the patterns that no effect explains add up to on both sides of a tooth where its thickness is measured, RMS over the gear, mm: whether they are
     the part's is not known."""
     grid, loop = measured.cells.grid, measured.loop
     if loop is None or not loop.patterns:
         return 0.0
-    column = int(grid.flank_column(grid.gear.reference_roll))
+    column = int(grid.flank_column(grid.gear.thickness_roll))
     field = np.sum([grid.flank_shape(pattern.field) for pattern in loop.patterns], axis=0)
     return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
 

@@ -21,6 +21,8 @@ from gearwear.design.tip_edge import TipArc
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
+OFF_END = 0.1
+"""Modules off the end of the involute where thickness is measured, if the reference circle lies beyond it."""
 UNKNOWN_RIM = 3.0
 """Modules beyond its roots up to which the body of a ring goes where no rim is stated."""
 
@@ -274,9 +276,24 @@ class Gear:
         return self.base_radius * self.base_helix_cosine
 
     @property
+    def thickness_radius(self) -> float:
+        """Where the thickness of worn teeth is measured, mm: the reference circle; where that lies off the involute, as with much profile shift, near
+        the end of it that is nearer."""
+        low, high = sorted((self.form_radius, self.flank_end_radius))
+        if low <= self.reference_radius <= high:
+            return self.reference_radius
+        inset = min(OFF_END * self.transverse_module, 0.5 * (high - low))
+        return low + inset if self.reference_radius < low else high - inset
+
+    @property
+    def thickness_roll(self) -> float:
+        """L at `thickness_radius`, mm."""
+        return float(self.roll_length(self.thickness_radius))
+
+    @property
     def arc_per_depth(self) -> float:
-        """r / (r_b cos β_b): transverse arc at the reference circle for each mm along a flank's normal in space."""
-        return self.reference_radius / self.normal_lever
+        """r / (r_b cos β_b): transverse arc at `thickness_radius` for each mm along a flank's normal in space."""
+        return self.thickness_radius / self.normal_lever
 
     @property
     def twist(self) -> float:

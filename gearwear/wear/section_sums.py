@@ -44,8 +44,8 @@ class SectionBand:
 
     @classmethod
     def of(cls, gear: Gear, radius: float | None = None, z: Floats | None = None) -> SectionBand:
-        """At a radius, None: the reference circle; and heights, None: those of `stations`. ValueError if the radius is not on the involute."""
-        r = gear.reference_radius if radius is None else radius
+        """At a radius, None: `Gear.thickness_radius`; and heights, None: those of `stations`. ValueError if the radius is not on the involute."""
+        r = gear.thickness_radius if radius is None else radius
         if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
             raise ValueError(
                 f"radius {r} mm is not on the involute: {min(gear.form_radius, gear.flank_end_radius):.4f} … {max(gear.form_radius, gear.flank_end_radius):.4f} mm"

@@ -266,8 +266,8 @@ def usual_range(values: Floats, reach: float = 6.0) -> tuple[float, float]:
     return float(near.min()), float(near.max())
 
 
-def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
-    """Arc thickness at the reference circle: the mean over the face and the least, tooth by tooth, against the design."""
+def thickness_per_tooth(axis: Axes, thickness: SectionThickness, place: str = "at the reference circle") -> Axes:
+    """Arc thickness, `place` says where: the mean over the face and the least, tooth by tooth, against the design."""
     teeth = thickness.teeth()
     tooth = np.array([tooth.tooth + 1.0 for tooth in teeth])
     mean, least, nominal = (np.array([getattr(tooth, name) for tooth in teeth]) for name in ("mean", "least", "nominal"))
@@ -282,7 +282,7 @@ def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     for x, y in zip(tooth[below], least[below], strict=True):
         axis.plot(x, low - 0.4 * margin, "v", color=LOST, ms=5, mfc="white")
         axis.annotate(f"{y:.3f}", (x, low), (4, -2), textcoords="offset points", color=LOST, fontsize=8)
-    axis.set(xlabel="tooth", ylabel="thickness at the reference circle, mm", xlim=(tooth.min() - 0.6, tooth.max() + 0.6))
+    axis.set(xlabel="tooth", ylabel=f"thickness {place}, mm", xlim=(tooth.min() - 0.6, tooth.max() + 0.6))
     axis.set_ylim(low - margin, high + margin)
     axis.ticklabel_format(axis="y", useOffset=False)
     if len(tooth) <= 36:

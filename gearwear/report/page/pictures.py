@@ -151,12 +151,12 @@ def residual_maps(arrays: ReportArrays) -> list[Picture]:
     )]  # fmt: skip
 
 
-def thickness(section: SectionThickness) -> Picture:
-    """Thickness tooth by tooth."""
+def thickness(section: SectionThickness, place: str) -> Picture:
+    """Thickness tooth by tooth; `place` says where, in words."""
 
     def draw() -> Figure:
         figure = Figure(figsize=(FULL, 2.7))
-        figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), section)
+        figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), section, place)
         return figure
 
     return Picture(

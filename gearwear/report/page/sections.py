@@ -33,7 +33,7 @@ from gearwear.report.words.effects import fitted_words, found_words
 from gearwear.report.words.loaded import HEAD as HEAD_LOADED
 from gearwear.report.words.loaded import TEXT as TEXT_LOADED
 from gearwear.report.words.loaded import load_words, loaded_notes, loaded_rows
-from gearwear.report.words.numbers import effect_title, row, which_flanks
+from gearwear.report.words.numbers import effect_title, row, thickness_place, which_flanks
 from gearwear.report.words.running import CAPTION as CAPTION_RUNNING
 from gearwear.report.words.running import HEAD as HEAD_RUNNING
 from gearwear.report.words.running import running_rows, running_words, why_not_words
@@ -188,9 +188,10 @@ def thickness(results: Results) -> Section:
         if worn
         else f"{which} is the furthest below the gear as made"
     )
+    place = thickness_place(results.gear)
     text = (
         f"{lost}; its least is {least} mm by itself, designed are {number(tooth.nominal, 3)} mm. Of many teeth one is thinnest by chance: the thinnest"
-        " tooth above allows for that. Thickness is the arc at the reference circle, without what the scanner added; a loss is against the gear as made."
+        f" tooth above allows for that. Thickness is the arc {place}, without what the scanner added; a loss is against the gear as made."
     )
     head = ("tooth", "design, mm", "mean, mm", "least, mm", "greatest loss, mm", "± of one section, mm", "least at z, mm")
     rows = [
@@ -200,7 +201,7 @@ def thickness(results: Results) -> Section:
         )
         for t in teeth
     ]  # fmt: skip
-    return Section("thickness", link, title, [Paragraph(text), pictures.thickness(measured), Table(head, rows)])
+    return Section("thickness", link, title, [Paragraph(text), pictures.thickness(measured, place), Table(head, rows)])
 
 
 def meshing(results: Results, arrays: ReportArrays) -> Section:

@@ -5,9 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 
+from gearwear.design.gear import Gear
 from gearwear.design.quantity import MISSING, SPACE, counted, listed, number, pretty_unit, significant, with_std
 from gearwear.diagnose.effects.base import ParameterEstimate
 from gearwear.wear.regions import WearRegion
+
+
+def thickness_place(gear: Gear) -> str:
+    """Where the thickness of teeth is measured, as words behind it.
+
+    >>> from gearwear.design.spec import GearSpec
+    >>> thickness_place(Gear.from_spec(GearSpec("gear", 30, 3.0, 14.0, profile_shift=-1.05))).replace(SPACE, " ")
+    'at ⌀ 89.10 mm'
+    """
+    if gear.thickness_radius == gear.reference_radius:
+        return "at the reference circle"
+    return f"at ⌀{SPACE}{number(2.0 * gear.thickness_radius, 2)}{SPACE}mm"
 
 
 def quantity(estimate: ParameterEstimate) -> str:

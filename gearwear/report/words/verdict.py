@@ -26,7 +26,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.refusal import SeenRadii
 from gearwear.report.words.effects import found_words
-from gearwear.report.words.numbers import effect_title, which_flanks
+from gearwear.report.words.numbers import effect_title, thickness_place, which_flanks
 from gearwear.scan.types import Scan
 from gearwear.wear.breakage import MISSING_TOOTH
 from gearwear.wear.regions import WearRegion
@@ -114,7 +114,7 @@ def _wear_found(results: Results) -> str:
         which = "that tooth" if tooth.tooth == worst.tooth else f"tooth {tooth.tooth + 1}"
         text += (
             f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / tooth.nominal, 2)}{SPACE}%)"
-            " thinner than designed at the reference circle"
+            f" thinner than designed {thickness_place(results.gear)}"
         )
     if _open(results):
         return f"{text}; {_may_be(results)}"
@@ -394,7 +394,9 @@ def key_figures(results: Results) -> list[KeyFigure]:
     if tooth is not None:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
         across = "" if results.gear.twist == 0.0 else ", transverse arc"
-        note = f"tooth {tooth.tooth + 1}{where}; design {number(tooth.nominal, 3)}{SPACE}mm, at the reference circle{across}"
+        note = (
+            f"tooth {tooth.tooth + 1}{where}; design {number(tooth.nominal, 3)}{SPACE}mm, {thickness_place(results.gear)}{across}"
+        )
         key.append(KeyFigure("Thinnest tooth", thinnest_words(tooth), note))
     if results.pair is not None:
         key += _contact_figures(results)
