@@ -416,7 +416,8 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
         return result
     turn = gear.arc_per_depth
     step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
-    along = loop.covariance.row_step ** (step * measured.cells.grid.rows / gear.face_width)
+    grid = measured.cells.grid
+    along = loop.covariance.row_step ** (step * (grid.rows - grid.groove_rows) / (gear.face_width - gear.spec.gap))
     common = np.hypot(turn * sum(measured.level_std), turn * _unexplained(measured))
     result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), float(common))
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))

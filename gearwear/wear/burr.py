@@ -88,10 +88,10 @@ def without_burrs(
         limit = PROUD_STDS * noise / np.sqrt(np.maximum(sheets.count[:, side.index][..., tip], 1.0))
         proud = (sheets.deviation[:, side.index][..., tip] > limit) & seen[..., tip]
         by_noise = float(ndtr(-PROUD_STDS)) * float(seen[..., tip].sum())
-        profile = filled[:, side.index].mean(axis=1)
+        profile = filled[:, side.index, grid.toothed].mean(axis=1)
         line = np.polynomial.polynomial.polyfit(below, profile[:, below].T, 1)
         excess = profile[:, tip] - np.polynomial.polynomial.polyval(tip, line)
-        volume = (excess * sheets.area[tip]).sum(axis=1) * grid.rows
+        volume = (excess * sheets.area[tip]).sum(axis=1) * int(grid.toothed.sum())
         scatter = float(volume.std(ddof=1))
         enough = -float(np.sqrt(len(volume))) * float(volume.mean()) / max(scatter, 1e-300)
         lifted = pdtrc(max(float(proud.sum()) - 1.0, 0.0), by_noise) < CHANCE or _points_proud(sheets, cells, noise, side, tip)

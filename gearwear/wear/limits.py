@@ -21,7 +21,7 @@ from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.flank_columns import wear_columns
 from gearwear.diagnose.found import Loop
 from gearwear.diagnose.gram import Gram
-from gearwear.placing.cells import Cells
+from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import SideMaps, own_spread, window_mean
 from gearwear.wear.own_level import typical_heights
 from gearwear.wear.uncertainty import model_columns, noise_covariance, region_weights
@@ -113,12 +113,12 @@ def flank_limits(
     _, number = window_mean(sheets)
     rows, first = sheets.count.shape[2], sheets.fillet
     level = (0.0, 0.0) if loop is None else loop.level_std
-    left = ~gone[..., first:]
+    left = ~gone[..., first:] & cells.grid.toothed[:, None]
     seen = (sheets.seen[..., first:] & left).sum(axis=(2, 3)) / np.maximum(left.sum(axis=(2, 3)), 1)
     gear = cells.grid.gear
     white = noise / math.sqrt(max(float(np.median(number[number > 0.5])), 1.0)) if (number > 0.5).any() else 0.0
     beyond = _beyond_noise(cells, sheets, noise, loop, rim)
-    scatter, shared = _placebo(sheets, mask, rim)
+    scatter, shared = _placebo(cells.grid, sheets, mask, rim)
     result = []
     for tooth, half in np.ndindex(seen.shape):
         edge = max(PATCH, 3 * int(sheets.merged[tooth, half]))
@@ -318,13 +318,13 @@ def _depth(seed: float, cell_std: Floats, by_noise: Floats, volume: Floats, leas
     return high
 
 
-def _reference(sheets: SideMaps, rim: int) -> Bools:
-    """(rows, columns) cells that a patch in the middle of a flank and its surroundings take."""
-    rows, columns = sheets.count.shape[2:]
+def _reference(grid: CellGrid, sheets: SideMaps, rim: int) -> Bools:
+    """(rows, columns) cells that a patch in the middle of a flank and its surroundings take; of the lower half of a double helical gear."""
+    rows, columns = grid.zones[0][0], sheets.count.shape[3]
     edge = PATCH + 2 * rim
-    low, left = max((rows - edge) // 2, 0), max((sheets.fillet + columns) // 2 - edge // 2, 0)
-    result = np.zeros((rows, columns), dtype=bool)
-    result[low : rows - low, left : left + edge] = True
+    beside, left = max((rows.stop - rows.start - edge) // 2, 0), max((sheets.fillet + columns) // 2 - edge // 2, 0)
+    result = np.zeros(sheets.count.shape[2:], dtype=bool)
+    result[rows.start + beside : rows.stop - beside, left : left + edge] = True
     return result
 
 
@@ -333,7 +333,7 @@ def _beyond_noise(cells: Cells, sheets: SideMaps, noise: float, loop: Loop | Non
     if loop is None:
         return 0.0, 0.0
     total, square = ((sheets.count[..., sheets.fillet :] ** power).sum(axis=(2, 3)) for power in (1, 2))
-    region = _reference(sheets, rim)
+    region = _reference(cells.grid, sheets, rim)
     regions = np.zeros((2, *sheets.count.shape), dtype=bool)
     for half in range(2):
         typical = int(
@@ -348,12 +348,12 @@ def _beyond_noise(cells: Cells, sheets: SideMaps, noise: float, loop: Loop | Non
     return float(left), float(right)
 
 
-def _placebo(sheets: SideMaps, mask: Bools, rim: int) -> tuple[float, float]:
+def _placebo(grid: CellGrid, sheets: SideMaps, mask: Bools, rim: int) -> tuple[float, float]:
     """Variance of the mean over a region from side to side without wear, and the square of its mean, mm²: what the as-made gear does not know."""
-    sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > SEEN)
+    sound = ~mask.any(axis=(2, 3)) & (sheets.seen[:, :, grid.toothed].mean(axis=(2, 3)) > SEEN)
     if sound.sum() < FEWEST_SIDES:
         return 0.0, 0.0
-    region = _reference(sheets, rim) & (sheets.seen[sound].any(axis=0))
+    region = _reference(grid, sheets, rim) & (sheets.seen[sound].any(axis=0))
     inside = np.where(sheets.seen, sheets.deviation, 0.0)[sound][:, region]
     means = inside.sum(axis=1) / np.maximum(sheets.seen[sound][:, region].sum(axis=1), 1)
     return float(means.var()), float(means.mean()) ** 2

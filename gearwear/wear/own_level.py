@@ -68,10 +68,12 @@ def at_own_level(cells: Cells, noise: float, loop: Loop | None, worn: frozenset[
     if not level.any():
         return cells, 0.0
     # What is worn lies below: of the rest of the flank the highest places are a greater share.
-    lower = worn_cells(local - level[..., None, None], number, noise)[0][..., sheets.fillet :].mean(axis=(2, 3))
+    lower = worn_cells(local - level[..., None, None], number, noise)[0][:, :, cells.grid.toothed, sheets.fillet :].mean(
+        axis=(2, 3)
+    )
     level = np.where(level != 0.0, _levels(known, sound, lower), 0.0)
     taken = np.broadcast_to(level[..., None, None], sheets.count.shape)
-    area = sheets.count.shape[2] * sheets.flank_row
+    area = int(cells.grid.toothed.sum()) * sheets.flank_row
     lost = float(np.maximum(-level, 0.0).sum()) * area
     return cells.with_deviation(cells.points.deviation - cells.grid.on_cells(taken)), lost
 

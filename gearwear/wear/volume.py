@@ -13,7 +13,7 @@ from scipy.special import ndtri
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
-from gearwear.placing.cells import Cells
+from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
 from gearwear.wear.made_apart import made_apart
@@ -307,7 +307,7 @@ class _Errors:
             white[which] += (values**2 * of_points).sum(axis=(1, 2))
         shared, scatter = np.zeros(number), np.zeros(number)
         for i, here in enumerate(support):
-            placebo, expected = _placebo(self.sheets, self.mask, self.wide, here, self.noise, least)
+            placebo, expected = _placebo(self.cells.grid, self.sheets, self.mask, self.wide, here, self.noise, least)
             if len(placebo) >= FEWEST_SIDES:
                 shared[i], scatter[i] = placebo.mean(), placebo.var() - expected
         return np.asarray(known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared))
@@ -398,10 +398,12 @@ def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], shares
     return -float(weights[seen] @ values), weights, float(values.var()) * unseen**2
 
 
-def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, shares: Floats, noise: float, least: float) -> tuple[Floats, float]:
+def _placebo(
+    grid: CellGrid, sheets: SideMaps, mask: Bools, wide: Bools, shares: Floats, noise: float, least: float
+) -> tuple[Floats, float]:
     """What `shares` of the cells of a side come to, mm³, on each side without wear on which more than the share `least` of them is seen; and
     the variance of that by the noise of the points, mm⁶."""
-    sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
+    sound = ~mask.any(axis=(2, 3)) & (sheets.seen[:, :, grid.toothed].mean(axis=(2, 3)) > 0.5)
     if sound.sum() >= FEWEST_PLACEBOS:
         free = shares * (sound[..., None, None] & sheets.seen)
     else:
