@@ -261,15 +261,15 @@ class MeasuredGear(Card):
     @property
     def coverage(self) -> dict[str, float]:
         """Share of each surface that was seen, by its name; flanks also by side."""
-        coverage = {}
+        coverage, there = {}, self.cells.grid.on_teeth
         for code, (start, size) in self.cells.grid.blocks.items():
             name = SURFACE_NAMES[code]
             if name == "bore" and self.gear.body_radius <= 0.0:
                 continue
-            seen = self.cells.count[start : start + size] > 0
+            seen = self.cells.count[start : start + size][there[start : start + size]] > 0
             coverage[name] = float(seen.mean())
             if name == "flank":
-                side = self.cells.points.side[start : start + size]
+                side = self.cells.points.side[start : start + size][there[start : start + size]]
                 coverage |= {f"flank_{which}": float(seen[side == which].mean()) for which in Side}
         return coverage
 

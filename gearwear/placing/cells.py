@@ -169,6 +169,16 @@ class CellGrid:
         return result
 
     @property
+    def on_teeth(self) -> Bools:
+        """(m,) cells that the gear has: all but those of flanks, fillets, tips and roots in the rows of a groove."""
+        result = np.ones(self.count, dtype=bool)
+        columns = {FLANK: self.flank, FILLET: self.fillet, TIP: self.tip, ROOT: self.root}
+        for surface, (start, size) in self.blocks.items():
+            if surface in columns:
+                result[start : start + size].reshape(-1, self.rows, columns[surface])[:, ~self.toothed] = False
+        return result
+
+    @property
     def row_height(self) -> float:
         """Height of a row with teeth, mm."""
         return (self.gear.face_width - self.gear.spec.gap) / (self.rows - self.groove_rows)
