@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from gearwear.comparison.laying import laid_on, unstated_root
 from gearwear.design.gear import Gear
@@ -46,5 +45,5 @@ def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gea
     edge = {key: getattr(other.spec, key) for key in ("tip_chamfer", "tip_chamfer_land", "tip_rounding")}
     if all(getattr(gear.spec, key) == value for key, value in edge.items()):
         return placed, TipEdge(gear)
-    own = Gear.from_spec(replace(gear.spec, **edge))
+    own = gear.recut(**edge)
     return laid_on(own, scans, planar, unstated_root(own), placed), TipEdge(own, other.spec.tip_chamfer)

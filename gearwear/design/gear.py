@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -133,6 +134,19 @@ class Gear:
         )
         gear._check(pitch_angle)
         return gear
+
+    def recut(self, **changes: Any) -> Gear:
+        """The gear with another tip edge or root than drawn, by fields of its specification: what is modified stays where it was drawn.
+
+        Raises
+        ------
+        InputError
+            As `from_spec`.
+        """
+        spec = replace(self.spec, **changes)
+        if self.modified and spec.modified_between is None:
+            spec = replace(spec, modified_between=(self.form_roll, self.tip_roll))
+        return Gear.from_spec(spec)
 
     def _check(self, pitch_angle: float) -> None:
         name, spec = self.spec.name, self.spec
@@ -375,8 +389,8 @@ class Gear:
 
     def drawn(self, side: Side) -> DrawnFlank:
         """The modification of the flanks of one side, along the transverse base tangent."""
-        modification = self.spec.left if side is Side.LEFT else self.spec.right
-        return DrawnFlank(modification, side, self.form_roll, self.tip_roll, self.base_radius, self.face_width)
+        modification, own = self.spec.left if side is Side.LEFT else self.spec.right, (self.form_roll, self.tip_roll)
+        return DrawnFlank(modification, side, *(self.spec.modified_between or own), self.base_radius, self.face_width, own)
 
     def drawn_excess(self, roll: float) -> float:
         """How much thicker the modifications make the tooth at L = `roll` (mm) and mid-face, both flanks together, mm along the transverse

@@ -150,6 +150,8 @@ class DrawnFlank:
         Roll length at the form circle and at the flank's end, mm; on a ring the first is the greater.
     base_radius, face_width : float
         mm.
+    own : (float, float) or None
+        The first two of the gear as it is, where that is not as drawn; None: the same.
     """
 
     modification: FlankModification
@@ -158,6 +160,7 @@ class DrawnFlank:
     tip_roll: float
     base_radius: float
     face_width: float
+    own: tuple[float, float] | None = None
 
     @property
     def _ends(self) -> tuple[float, float]:
@@ -217,13 +220,16 @@ class DrawnFlank:
     @property
     def profile_knees(self) -> tuple[float, ...]:
         """Roll lengths (mm, from the form circle to the tip) within the flank where p(L) has a knee."""
-        drawn, knees = self.modification, []
+        return self._knees(*sorted(self.own or self._ends))
+
+    def _knees(self, least: float, most: float) -> tuple[float, ...]:
+        """The same between two roll lengths, mm."""
+        drawn, knees = self.modification, list(self._ends)  # beyond them it goes on as it is there
         if drawn.root_relief > 0.0:
             knees.append(self.root_relief_start)
         if drawn.tip_relief > 0.0:
             knees.append(self.tip_relief_start)
-        low, high = self._ends
-        return tuple(sorted({knee for knee in knees if low < knee < high}, reverse=self._way < 0.0))
+        return tuple(sorted({knee for knee in knees if least < knee < most}, reverse=self._way < 0.0))
 
     @property
     def face_knees(self) -> tuple[float, ...]:
@@ -259,7 +265,7 @@ class DrawnFlank:
                 f"[{section}] end_relief_length = {drawn.end_relief_length:g} mm: must be at most half the face width {self.face_width:g} mm"
             )
         steepest = max(
-            _steepest(self.along_profile, self.form_roll, self.tip_roll, self.profile_knees),
+            _steepest(self.along_profile, self.form_roll, self.tip_roll, self._knees(*self._ends)),
             _steepest(self.along_face, 0.0, self.face_width, self.face_knees),
         )
         if steepest > STEEPEST:

@@ -80,6 +80,9 @@ class GearSpec:
         How far the gear may lie off these values.
     left, right : FlankModification
         Relief, crowning and slopes of the flanks of either side, as drawn.
+    modified_between : (float, float) or None
+        Roll lengths of the ends, form circle and tip, of the flanks that these were drawn for, mm, where tip edge or root are not the drawn ones
+        (`Gear.recut`); None: the flanks' own.
     internal : bool
         A ring: teeth inwards.
     cutter_teeth : int or None
@@ -132,6 +135,7 @@ class GearSpec:
     grinding_stock: float = 0.0
     protuberance_angle: float | None = None
     tip_chamfer_land: float | None = None
+    modified_between: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         try:

@@ -7,13 +7,12 @@ the dedendum of a rack that do are looked for, and where none fits the root is f
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
-from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SurfacePoints, locate
 from gearwear.design.twist import from_end, section_angle
 from gearwear.errors import InputError
@@ -222,8 +221,7 @@ def _radii(points: Floats, gear: Gear, dedendum: float) -> list[float]:
 
 def _with(gear: Gear, rack_tip_radius: float, dedendum: float) -> Gear | None:
     """The gear cut by another rack; None where there is none such."""
-    spec: GearSpec = replace(gear.spec, rack_tip_radius=rack_tip_radius, dedendum=dedendum)
     try:
-        return Gear.from_spec(spec)
+        return gear.recut(rack_tip_radius=rack_tip_radius, dedendum=dedendum)
     except InputError:
         return None

@@ -127,7 +127,7 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
     half = float(gear.half_angle(gear.tip_radius - way * begins))
     leg = None if land is None else max(half * gear.tip_radius - land + BEFORE * STEP * m, 0.0)
     try:
-        ends = Gear.from_spec(replace(gear.spec, tip_chamfer=begins, tip_chamfer_land=leg, tip_rounding=0.0))
+        ends = gear.recut(tip_chamfer=begins, tip_chamfer_land=leg, tip_rounding=0.0)
     except InputError:  # it leans so far that no chamfer of 45° ends there
         return TipEdge(gear)
     ends_at = ends.tip_half_angle if land is None else land / gear.tip_radius
@@ -160,7 +160,7 @@ def _land(points: Floats, gear: Gear, top: float) -> float | None:
 
 def _on_sharp(points: Floats, gear: Gear) -> SurfacePoints:
     """Points near the tips on flanks that are drawn up to these, whatever edge the design has; of lands too, which lie deep below."""
-    sharp = Gear.from_spec(replace(gear.spec, tip_chamfer=0.0, tip_chamfer_land=None, tip_rounding=0.0))
+    sharp = gear.recut(tip_chamfer=0.0, tip_chamfer_land=None, tip_rounding=0.0)
     never = (math.inf, math.inf)
     found = locate(points, sharp, replace(Bands.wide(sharp), tip=never, end_low=never, end_high=never))
     return found.take(found.surface == FLANK)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gearwear.comparison.stations import compare
-from gearwear.design import read_design
+from gearwear.design import Gear, read_design
+from gearwear.design.modification import FlankModification
+from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from tests.synthetic import GearNumbers, Recipe, SlidingWear, Texture, make_scan
 from tests.synthetic.edges import bevelled, height_of
+from tests.synthetic.helical import Helical, scan
 from tests.synthetic.outline import Outline
+from tests.synthetic.test_helical import designed
 
 NUMBERS = GearNumbers(20, 3.0, 20.0, 20.0, 0.1)
 FLANK, LAND = 0.5, 0.4
@@ -69,3 +75,20 @@ def test_between_two_scans_nothing_is_lost(folder, unworn):
     again, _ = written(folder, "again", 3)
     results = compare(read_design(folder / "design.toml"), [again], before=[unworn], inspection=False)
     assert results.wear.regions == ()
+
+
+@pytest.mark.long
+def test_what_the_drawing_modifies_ends_where_it_is_drawn_and_not_at_the_bevel(tmp_path):
+    """Crowned up to the sharp tip, as it was cut before the tips were bevelled: no other profile than drawn, and no slope."""
+    numbers = Helical(teeth=20, module=3.0, helix=0.0, width=20.0, shift=0.1)
+    crowned = FlankModification(profile_crowning=0.03)
+    gear = Gear.from_spec(replace(designed(numbers).spec, left=crowned, right=crowned))
+    cloud = scan(numbers, 60_000, noise=0.004, seed=5, added=lambda side, roll, z: gear.drawn(Side.LEFT).along_profile(roll))
+    points = (cloud.points - cloud.translation) @ cloud.rotation
+    np.savetxt(tmp_path / "scan.xyz", bevelled(points, NUMBERS, FLANK, LAND))
+    results = compare(Design({"gear": gear}), [tmp_path / "scan.xyz"], inspection=False)
+    assert results.measured.tip_edge.height > 0.3
+    assert results.wear.regions == () and results.effects == ()
+    cells = results.measured.cells
+    profile = np.nanmean(cells.grid.flank_shape(cells.points.deviation), axis=(0, 1, 2))
+    assert np.ptp(profile) < 0.0015

@@ -296,6 +296,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         protuberance_angle=math.radians(finite_number(part, table, "protuberance_angle"))
         if "protuberance_angle" in table
         else None,
+        modified_between=None,
         **values,
     )
 
