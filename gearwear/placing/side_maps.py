@@ -30,10 +30,10 @@ LEAN_STEPS = 8
 """Steps of an arc of the root over which the lean of its normals is averaged."""
 RING_CELLS = 2
 """Cells round a hole that say what is in it."""
-RING = range(-RING_CELLS, RING_CELLS + 1)
-"""Steps from a hole of one cell to those round it, along either way."""
+CROSS = ndimage.generate_binary_structure(2, 1)
+"""What is beside a cell."""
 HOLES_AT_A_TIME = 4096
-"""Holes of one cell that are filled together."""
+"""Holes of one form that are filled together."""
 NEAR_EDGE = 2
 """Cells from an edge of the flank within which pits are taken to go on to it."""
 GROWTH_LIMIT_STDS = 2.5
@@ -314,54 +314,53 @@ def infill(side_maps: SideMaps) -> Floats:
 
 def _span_holes(filled: Floats, side_maps: SideMaps) -> None:
     """Put quadratic surfaces into the holes of `filled` that lie inside a flank or a fillet."""
-    cross = ndimage.generate_binary_structure(2, 1)
     beside = np.zeros((3, 3, 3, 3), dtype=bool)
-    beside[1, 1] = cross
-    label, _ = ndimage.label(~side_maps.seen, beside)
+    beside[1, 1] = CROSS
+    seen = side_maps.seen
+    label, _ = ndimage.label(~seen, beside)
     rows, columns = label.shape[2:]
-    single = np.bincount(label.ravel())[label] == 1
-    _span_single(filled, side_maps, np.argwhere(single & ~side_maps.seen))
-    for number, place in enumerate(ndimage.find_objects(np.where(single, 0, label)), start=1):
-        if place is None:
-            continue
+    alike = dict[tuple[int, int, bytes], list[tuple[int, int, int, int]]]()
+    for number, place in enumerate(ndimage.find_objects(label), start=1):
         side, (low, high), (start, stop) = (place[0].start, place[1].start), *((edges.start, edges.stop) for edges in place[2:])
         first, last = (0, side_maps.fillet) if stop <= side_maps.fillet else (side_maps.fillet, columns)
         if low == 0 or high == rows or start <= first or stop >= last:
             continue
-        # Only the cells about the hole: a scan of many points has thousands of them.
-        bottom, begin = max(low - RING_CELLS, 0), max(start - RING_CELLS, first)
-        near = (*side, slice(bottom, high + RING_CELLS), slice(begin, min(stop + RING_CELLS, last)))
-        hole = label[near] == number
-        ring = ndimage.binary_dilation(hole, cross, iterations=RING_CELLS) & side_maps.seen[near]
-        if ring.sum() < 2 * 6:
-            continue
-        z, x = np.indices(hole.shape)
-        z, x = z - (0.5 * (low + high) - bottom), x - (0.5 * (start + stop) - begin)
-        terms = np.stack([np.ones_like(x), x, z, x * x, x * z, z * z], axis=-1)
-        weight, round_it = np.sqrt(side_maps.count[near][ring]), side_maps.deviation[near][ring]
-        shape = np.linalg.lstsq(terms[ring] * weight[:, None], round_it * weight, rcond=None)[0]
-        span = np.ptp(round_it)
-        filled[near][hole] = np.clip(terms[hole] @ shape, round_it.min() - 0.5 * span, round_it.max() + 0.5 * span)
+        form = (high - low, stop - start, (label[place] == number).tobytes())
+        alike.setdefault(form, []).append((*side, low, start))
+    for (high, wide, form), holes in alike.items():
+        hole = np.frombuffer(form, dtype=bool).reshape(high, wide)
+        for some in np.array_split(np.array(holes), max(1, -(-len(holes) // HOLES_AT_A_TIME))):
+            _span(filled, side_maps, seen, hole, some)
 
 
-def _span_single(filled: Floats, side_maps: SideMaps, holes: Ints) -> None:
-    """The same for holes of one cell, (n, 4), of which a scan of many points has thousands: those with all cells of their ring."""
-    rows, columns = filled.shape[2:]
-    ring = np.array([(z, x) for z in RING for x in RING if 0 < abs(z) + abs(x) <= RING_CELLS])
-    terms = np.stack([np.ones(len(ring)), *ring.T, ring[:, 1] ** 2, ring[:, 0] * ring[:, 1], ring[:, 0] ** 2], axis=-1)
-    for some in np.array_split(holes, max(1, -(-len(holes) // HOLES_AT_A_TIME))):
-        z, x = (some[:, way, None] + ring[:, way - 2] for way in (2, 3))
-        fillet = some[:, 3, None] < side_maps.fillet
-        first, last = np.where(fillet, 0, side_maps.fillet), np.where(fillet, side_maps.fillet, columns)
-        within = ((z >= 0) & (z < rows) & (x >= first) & (x < last)).all(axis=1)
-        around = tuple(np.broadcast_arrays(some[within, :1], some[within, 1:2], z[within], x[within]))
-        whole = side_maps.seen[around].all(axis=1)
-        around, place = tuple(axis[whole] for axis in around), tuple(some[within][whole].T)
-        weight, round_it = np.sqrt(side_maps.count[around]), side_maps.deviation[around]
-        # In the middle of the hole the surface is its constant term.
-        value = np.einsum("ni,ni->n", np.linalg.pinv(terms * weight[..., None])[:, 0], round_it * weight)
-        least, most = round_it.min(axis=1), round_it.max(axis=1)
-        filled[place] = np.clip(value, least - 0.5 * (most - least), most + 0.5 * (most - least))
+def _span(filled: Floats, side_maps: SideMaps, seen: Bools, hole: Bools, holes: Ints) -> None:
+    """The same for holes of one form, (rows, columns), of which a scan of many points has thousands, that begin at `holes` (n, 4)."""
+    wide = np.pad(hole, RING_CELLS)
+    inside = np.argwhere(wide) - RING_CELLS
+    ring = np.argwhere(ndimage.binary_dilation(wide, CROSS, iterations=RING_CELLS) & ~wide) - RING_CELLS
+    middle = 0.5 * np.array(hole.shape)
+
+    def terms(at: Ints) -> Floats:
+        z, x = (at - middle).T
+        return np.stack([np.ones(len(at)), x, z, x * x, x * z, z * z], axis=-1)
+
+    z, x = (holes[:, way, None] + ring[:, way - 2] for way in (2, 3))
+    fillet = holes[:, 3, None] < side_maps.fillet
+    first, last = np.where(fillet, 0, side_maps.fillet), np.where(fillet, side_maps.fillet, seen.shape[3])
+    within = (z >= 0) & (z < seen.shape[2]) & (x >= first) & (x < last)
+    around = holes[:, :1], holes[:, 1:2], z.clip(0, seen.shape[2] - 1), x.clip(0, seen.shape[3] - 1)
+    known = within & seen[around]
+    enough = known.sum(axis=1) >= (2 * 6 if hole.size > 1 else len(ring))
+    known, around, holes = known[enough], tuple(np.broadcast_to(axis, within.shape)[enough] for axis in around), holes[enough]
+    # Cells that do not count have no weight.
+    weight, round_it = np.where(known, np.sqrt(side_maps.count[around]), 0.0), np.where(known, side_maps.deviation[around], 0.0)
+    inverse = np.linalg.pinv(terms(ring) * weight[..., None], rtol=len(ring) * np.finfo(float).eps)
+    value = np.einsum("nti,ni->nt", inverse, round_it * weight) @ terms(inside).T
+    least, most = (
+        of(np.where(known, round_it, empty), axis=1, keepdims=True) for of, empty in ((np.min, np.inf), (np.max, -np.inf))
+    )
+    place = holes[:, :1], holes[:, 1:2], holes[:, 2:3] + inside[:, 0], holes[:, 3:] + inside[:, 1]
+    filled[place] = np.clip(value, least - 0.5 * (most - least), most + 0.5 * (most - least))
 
 
 def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0) -> tuple[Bools, float, float]:
