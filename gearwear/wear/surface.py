@@ -25,12 +25,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from heapq import heappop, heappush
 from itertools import product
 
 import numpy as np
+from numpy.lib.stride_tricks import as_strided
 from scipy import sparse
 from scipy.linalg import cho_solve_banded
+from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpbtrf, dtbtrs
 
 from gearwear.arrays import Bools, Floats, Ints
@@ -45,6 +46,12 @@ BETWEEN = 1e-6
 """Cells by which the middle of a window may miss the border between two and still lie on it; numerical."""
 FEWEST_SEEN = 12
 """Cells that must hold points for a side to say how stiff its surface is."""
+
+_GRID = sorted(product(TENSION, map(float, STIFFNESS)), key=lambda at: (2.0 * at[1] + math.log10(at[0]), at))
+_DECADES = np.array([(decade, decade + math.log10(tension)) for tension, decade in _GRID])
+_SOFTER = (_DECADES[:, None] < _DECADES + 1e-9).all(axis=2)
+"""All tensions and stiffnesses, from soft to stiff; the decades of τ and of τ κ² of each; and (i, j) whether none of the i-th is more than those of
+the j-th."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,21 +203,16 @@ class SideSurface:
         turned = _from_other_end(shape)
         half = _random(self.data.shape[0])
         from_above = _cholesky(_prior(shape, self.stiffness, self.tension) + _lower(self.data, len(self.factor), turned))
-        drawn = np.hstack(
-            [
-                dtbtrs(self.factor, half, uplo="L", trans="T")[0],
-                dtbtrs(from_above, half, uplo="L", trans="T")[0][turned],
-            ]
-        )
+        drawn = np.hstack([_from_below(self.factor, half), _from_below(from_above, half)[turned]])
         return np.asarray(drawn + self.expected[:, None], dtype=np.float64)
 
 
 def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) -> tuple[float, float]:
     """The tension and the decade of stiffness of least freedom less fit, among `TENSION` and `STIFFNESS`; then to half a decade.
 
-    A stiffer surface has less freedom, log|A| − log|Q|, and fits less well: between two stiffnesses neither is less than the freedom of the one
-    and more than the fit of the other. The freedom, a constant and Σ log(1 + dᵢ / τ) with dᵢ ≥ 0, is convex in log τ: a line through two of its
-    values lies below it beyond them. So what cannot be the least is left out (branch and bound; Land and Doig 1960).
+    A surface that is stiffer for every form, Q ≤ Q' as of matrices, has less freedom, log|A| − log|Q|, and fits less well. So what is between others that
+    are known has no less freedom than the stiffer and no more fit than the softer of them, and what cannot be the least is left out (branch and bound;
+    Land and Doig 1960). With Q = τ (κ² L + L²) the stiffer has no less τ and no less τ κ².
     """
     known = dict[tuple[float, float], tuple[float, float]]()
 
@@ -220,25 +222,16 @@ def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) ->
         freedom, fit = known[tension, decade]
         return freedom - fit
 
-    def between(tension: float, low: int, high: int) -> tuple[float, float, int, int]:
-        """No less than this costs what lies between two stiffnesses."""
-        end, freedom = STIFFNESS[high], known[tension, STIFFNESS[high]][0]
-        stiffer = [(decade, freer) for (of, decade), (freer, _) in known.items() if of == tension and decade > end]
-        rise = max(((freedom - freer) / (decade - end) for decade, freer in stiffer), default=0.0)
-        return freedom + rise * (end - STIFFNESS[high - 1]) - known[tension, STIFFNESS[low]][1], tension, low, high
-
-    last = len(STIFFNESS) - 1
-    least = min((cost(tension, STIFFNESS[end]), tension, STIFFNESS[end]) for tension in TENSION for end in (0, last))
-    left = [between(tension, 0, last) for tension in TENSION]
-    while left:
-        bound, tension, low, high = heappop(left)
-        if bound > least[0]:
-            break
-        middle = (low + high) // 2
-        least = min(least, (cost(tension, STIFFNESS[middle]), tension, STIFFNESS[middle]))
-        for part in ((low, middle), (middle, high)):
-            if part[1] - part[0] > 1:
-                heappush(left, between(tension, *part))
+    freedom, fit = np.full(len(_GRID), -np.inf), np.full(len(_GRID), np.inf)
+    least, left = (math.inf, 0.0, 0.0), np.arange(len(_GRID))
+    following = [0, len(_GRID) - 1]  # between the softest and the stiffest is all
+    while len(left):
+        which = following.pop() if following else int(left[len(left) // 2])
+        least = min(least, (cost(*_GRID[which]), *_GRID[which]))
+        own = known[_GRID[which]]
+        freedom[_SOFTER[:, which]] = np.maximum(freedom[_SOFTER[:, which]], own[0])
+        fit[_SOFTER[which]] = np.minimum(fit[_SOFTER[which]], own[1])
+        left = left[(left != which) & (freedom[left] - fit[left] <= least[0])]
     _, tension, decade = least
     return min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=lambda at: cost(*at))
 
@@ -373,6 +366,25 @@ def _cholesky(bands: Floats) -> Floats:
     if failed:
         raise np.linalg.LinAlgError("the precision of a surface is not positive definite")
     return np.asarray(triangle, dtype=np.float64)
+
+
+def _from_below(triangle: Floats, right: Floats) -> Floats:
+    """x (n, k) with Lᵀ x = `right`, L given as lower bands: block by block as wide as the bands, which takes half the time of LAPACK's column by
+    column."""
+    n, wide = triangle.shape[1], max(triangle.shape[0] - 1, 1)
+    flat, x = triangle.ravel(order="F"), right.copy()
+
+    def block(rows: slice, columns: slice) -> Floats:
+        """Of L, where it lies: an element below or right of the bands is another's."""
+        size, step = (rows.stop - rows.start, columns.stop - columns.start), flat.itemsize
+        return as_strided(flat[rows.start + columns.start * wide :], size, (step, step * wide))
+
+    for start in range((n - 1) // wide * wide, -1, -wide):
+        own, beyond = slice(start, min(start + wide, n)), slice(start + wide, min(start + 2 * wide, n))
+        if beyond.start < n:
+            x[own] -= np.triu(block(beyond, own)).T @ x[beyond]
+        dtrsm(1.0, block(own, own), x[own].T, side=1, lower=1, overwrite_b=1)
+    return x
 
 
 def _lower(matrix: sparse.csr_array, number: int, order: Ints | None = None) -> Floats:
