@@ -280,11 +280,6 @@ class MeasuredGear(Card):
         return flank.with_deviation(self.straightened(flank))
 
     @property
-    def raw_flanks(self) -> SurfacePoints:
-        """The points on flanks as registration placed them, without strays: what measurement added is in them."""
-        return self._without_strays(self.placed.located)
-
-    @property
     def section_band(self) -> SectionBand:
         """Where the thickness of sections is measured."""
         return SectionBand.of(self.gear, z=np.array([drawn_height(self.gear)]) if self.planar else None)
@@ -294,22 +289,26 @@ class MeasuredGear(Card):
         """Sums over the points of sections, without what measurement added and without strays."""
         if self.final.sections is not None:
             return self.final.sections
-        cut, points = Cut(self.section_band, self.straightened), self._without_strays(self.located)
-        return cut.of(points.take(cut.holds(points)))
+        cut = Cut(self.section_band, self.straightened)
+        return cut.of(self._without_strays(self.located, cut.holds(self.located)))
 
     @property
     def raw_sections(self) -> SectionSums:
         """The same as registration placed the points: what measurement added is in them."""
-        return SectionSums.of(self.raw_flanks, self.section_band) if self.streamed is None else self.streamed.first.sections
+        if self.streamed is not None:
+            return self.streamed.first.sections
+        band, located = self.section_band, self.placed.located
+        return SectionSums.of(self._without_strays(located, band.holds(located)), band)
 
     def straightened(self, points: SurfacePoints) -> Floats:
         """Deviations without what measurement added, mm."""
         return points.deviation if self.loop is None else points.deviation - self.loop.deviation(points, MEASURED)
 
-    def _without_strays(self, located: SurfacePoints) -> SurfacePoints:
+    def _without_strays(self, located: SurfacePoints, among: Bools | None = None) -> SurfacePoints:
+        """Points of flanks; those `among` (n,) alone."""
         grid = self.cells.grid
-        near = near_centre(located.deviation, grid.index(located), grid, clip_of(located))
-        return located.take((located.surface == FLANK) & near)
+        near = near_centre(located.deviation, grid.index(located), grid, clip_of(located)) & (located.surface == FLANK)
+        return located.take(near if among is None else near & among)
 
     @property
     def corrected(self) -> Cells:

@@ -367,7 +367,8 @@ def _thick(
     measured: MeasuredGear, unworn: MeasuredGear | None, effects: Sequence[PutBack] | None, wear: Wear
 ) -> tuple[SectionThickness, tuple[Change, ...]]:
     """Section thickness, and what the effects change of it; nothing was taken out where they are None."""
-    thickness = _with_hollows(_thickness(measured, measured.sections), measured, wear)
+    sections = measured.sections
+    thickness = _with_hollows(_thickness(measured, sections), measured, wear, sections)
     if unworn is not None:
         made_arc = _thickness(unworn, unworn.sections).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
@@ -437,7 +438,7 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
     )  # fmt: skip
 
 
-def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear) -> SectionThickness:
+def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear, sections: SectionSums) -> SectionThickness:
     """The same measurement with what pooled sections of worn teeth hide, and how well is known how thick each was made."""
     variance = np.tile(np.square(wear.apart), (len(thickness.arc), 1))
     if measured.loop is not None and measured.loop.untold is not None:
@@ -448,7 +449,7 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
     corrected = measured.corrected
     cells = corrected.with_deviation(corrected.points.deviation - measured.manufacture)
     hollows = find_hollows(
-        cells, wear.mask, measured.worn_sides, thickness.widths, measured.sections, thickness.as_made, measured.noise, measured.loop
+        cells, wear.mask, measured.worn_sides, thickness.widths, sections, thickness.as_made, measured.noise, measured.loop
     )  # fmt: skip
     return replace(thickness, hollows=hollows)
 

@@ -325,10 +325,10 @@ def _span_holes(filled: Floats, side_maps: SideMaps) -> None:
         first, last = (0, side_maps.fillet) if stop <= side_maps.fillet else (side_maps.fillet, columns)
         if low == 0 or high == rows or start <= first or stop >= last:
             continue
-        form = (high - low, stop - start, (label[place] == number).tobytes())
-        alike.setdefault(form, []).append((*side, low, start))
-    for (high, wide, form), holes in alike.items():
-        hole = np.frombuffer(form, dtype=bool).reshape(high, wide)
+        form = label[place] == number
+        alike.setdefault((high - low, stop - start, form.tobytes()), []).append((*side, low, start))
+    for (high, wide, inside), holes in alike.items():
+        hole = np.frombuffer(inside, dtype=bool).reshape(high, wide)
         for some in np.array_split(np.array(holes), max(1, -(-len(holes) // HOLES_AT_A_TIME))):
             _span(filled, side_maps, seen, hole, some)
 

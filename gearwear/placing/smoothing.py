@@ -59,7 +59,7 @@ def _ratios(flank: SurfacePoints) -> list[float]:
 
 def _patches(at: Floats) -> list[Ints]:
     """Points (n, 2) halved along the longer way until a half would be smaller than a patch; of more than `MOST_PATCHES` every second half goes on."""
-    parts, halvings = [np.arange(len(at))], 0
+    parts, halvings = list[Ints]([np.arange(len(at))]), 0
     while max(map(len, parts)) >= 2 * PATCH_POINTS:
         parts = [half for part in parts for half in _halves(at, part)]
         if len(parts) > MOST_PATCHES:  # now the one, now the other: always the lower would be always the same corner

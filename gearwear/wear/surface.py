@@ -49,7 +49,7 @@ FEWEST_SEEN = 12
 
 _GRID = sorted(product(TENSION, map(float, STIFFNESS)), key=lambda at: (2.0 * at[1] + math.log10(at[0]), at))
 _DECADES = np.array([(decade, decade + math.log10(tension)) for tension, decade in _GRID])
-_SOFTER = (_DECADES[:, None] < _DECADES + 1e-9).all(axis=2)
+_SOFTER: Bools = np.asarray((_DECADES[:, None] < _DECADES + 1e-9).all(axis=2))
 """All tensions and stiffnesses, from soft to stiff; the decades of τ and of τ κ² of each; and (i, j) whether none of the i-th is more than those of
 the j-th."""
 
@@ -64,10 +64,10 @@ class SideSurface:
         Mean of the expected deviation over each cell, mm.
     seen : (rows, columns) bool
         Cells whose points it was made from.
-    gain : (m, n) sparse
-        W B of these cells, mm⁻².
-    data : (n, n) sparse
-        BᵀWB, mm⁻².
+    at : (m, n) sparse
+        B of these cells.
+    weight : (m,) float
+        W, mm⁻².
     stiffness, tension : float
         τ, mm⁻², and κ².
     factor : (bands, n) float
@@ -80,8 +80,8 @@ class SideSurface:
 
     value: Floats
     seen: Bools
-    gain: sparse.csr_array
-    data: sparse.csr_array
+    at: sparse.csr_array
+    weight: Floats
     stiffness: float
     tension: float
     factor: Floats
@@ -115,22 +115,15 @@ class SideSurface:
         weight = 1.0 / variance[seen]
         bands, eigenvalues = len(_laplacian(mean.shape)[0]), _laplacian(mean.shape)[2]
         at, usual = _at_points(seen, offset, count), float(np.median(weight))
-        transposed = sparse.csr_array(at.T)
         before = np.zeros(at.shape[1]) if about is None else about.expected + about.level
         value = mean[seen] - at @ before
         level = float(weight @ value / weight.sum())
         value = value - level
 
-        def gains(of: Floats) -> tuple[sparse.csr_array, sparse.csr_array, Floats]:
-            gain = _rows_times(of, at)
-            data = transposed @ gain
-            data.sort_indices()
-            return gain, data, _lower(data, bands)
-
         # As stiff as it is where it is worn: a hollow in a flat flank is steeper than the flank.
         inside = worn[seen] if worn[seen].sum() >= FEWEST_SEEN else np.ones(len(weight), dtype=bool)
-        gain, data, banded = gains(np.where(inside, weight, 0.0))
-        pull = gain.T @ value
+        told = np.where(inside, weight, 0.0)
+        banded, pull = _lower(_information(at, told), bands), at.T @ (told * value)
 
         def freedom_and_fit(tension: float, decade: float) -> tuple[float, float]:
             triangle = _cholesky(_prior(mean.shape, usual * 10.0**decade, tension) + banded)
@@ -141,34 +134,33 @@ class SideSurface:
         tension, decade = likeliest(freedom_and_fit)
         stiffness = usual * 10.0**decade
         if not inside.all():
-            gain, data, banded = gains(weight)
+            banded = _lower(_information(at, weight), bands)
         triangle = _cholesky(_prior(mean.shape, stiffness, tension) + banded)
-        expected = before + cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
+        expected = before + cho_solve_banded((triangle, True), at.T @ (weight * value), check_finite=False)
         value = (_over_cells(mean.shape) @ expected).reshape(mean.shape) + level
-        return cls(value, seen, gain, data, stiffness, tension, triangle, expected, level)
+        return cls(value, seen, at, weight, stiffness, tension, triangle, expected, level)
 
     def shares(self, area: Floats) -> tuple[Floats, float]:
         """What each cell's mean weighs in the integral over `area` (rows, columns), mm², and the variance that the surface itself adds, mm⁶."""
         wanted = _over_cells(area.shape).T @ area.ravel()
         u = cho_solve_banded((self.factor, True), wanted, check_finite=False)
-        weights = np.zeros(area.shape)
-        weights[self.seen] = self.gain @ u
-        return weights, max(float(wanted @ u - u @ (self.data @ u)), 0.0)
+        weights, placed = np.zeros(area.shape), self.at @ u
+        weights[self.seen] = self.weight * placed
+        return weights, max(float(wanted @ u - placed @ (self.weight * placed)), 0.0)
 
     def left_to_before(self, area: Floats) -> Floats:
         """(n,) what the coefficients that it was expected to have weigh in the integral over `area` (rows, columns), mm²: a − BᵀWB A⁻¹ a."""
         wanted = _over_cells(area.shape).T @ area.ravel()
-        return np.asarray(
-            wanted - self.data @ cho_solve_banded((self.factor, True), wanted, check_finite=False), dtype=np.float64
-        )
+        u = cho_solve_banded((self.factor, True), wanted, check_finite=False)
+        return np.asarray(wanted - self.at.T @ (self.weight * (self.at @ u)), dtype=np.float64)
 
     def passed_on(self, left: Floats) -> tuple[Floats, Floats]:
         """What each cell's mean weighs where a surface about this one leaves `left` (k, n) to it, (k, rows, columns) mm², and the covariance of that
         by what this one does not know, (k, k) mm⁶."""
         u = cho_solve_banded((self.factor, True), left.T, check_finite=False)
-        weights = np.zeros((len(left), *self.seen.shape))
-        weights[:, self.seen] = (self.gain @ u).T
-        return weights, np.asarray(left @ u - u.T @ (self.data @ u), dtype=np.float64)
+        weights, placed = np.zeros((len(left), *self.seen.shape)), (self.at @ u).T
+        weights[:, self.seen] = self.weight * placed
+        return weights, np.asarray(left @ u - placed @ (self.weight * placed).T, dtype=np.float64)
 
     def deepest(self, window: tuple[float, float], inside: Bools) -> tuple[float, float]:
         """Least mean over a window, mm, and its standard deviation.
@@ -183,11 +175,17 @@ class SideSurface:
         number, drawn = _numbers(inside.shape), self._drawn(inside.shape)
         ways = [_over_windows(count, wide) for count, wide in zip(inside.shape, window, strict=True)]
         (rows, along), (columns, across) = ways
-        there = np.any([inside[np.ix_(row, column)] for row, column in product(rows, columns)], axis=0)
+        there: Bools = np.asarray(np.any([inside[np.ix_(row, column)] for row, column in product(rows, columns)], axis=0))
         if not there.any():  # narrower than half a window, at an edge: no window has its middle there
             return np.nan, np.nan
         by_rows = (sparse.csr_array(along) @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
-        least = (across @ by_rows)[there].min(axis=0) + self.level
+        least = np.full(DRAWS, np.inf)
+        for over, middles in zip(
+            by_rows, there, strict=True
+        ):  # row by row: all windows of all draws are larger than the rest of a comparison's work
+            if middles.any():
+                np.minimum(least, (across[middles] @ over).min(axis=0), out=least)
+        least += self.level
         return float(least.mean()), float(least.std())
 
     def along(self, rows: Floats, columns: Floats) -> Floats:
@@ -201,8 +199,9 @@ class SideSurface:
         """Coefficients of surfaces from N(c, A⁻¹), without the level, (n, `DRAWS`); half of them from either end of the face: which comes first does not
         matter."""
         turned = _from_other_end(shape)
-        half = _random(self.data.shape[0])
-        from_above = _cholesky(_prior(shape, self.stiffness, self.tension) + _lower(self.data, len(self.factor), turned))
+        half = _random(self.at.shape[1])
+        information = _lower(_information(self.at, self.weight), len(self.factor), turned)
+        from_above = _cholesky(_prior(shape, self.stiffness, self.tension) + information)
         drawn = np.hstack([_from_below(self.factor, half), _from_below(from_above, half)[turned]])
         return np.asarray(drawn + self.expected[:, None], dtype=np.float64)
 
@@ -351,6 +350,13 @@ def _path(number: int) -> sparse.csr_array:
     """Laplacian of so many in a row."""
     step = sparse.csr_array(np.diff(np.eye(number), axis=0))
     return sparse.csr_array(step.T @ step)
+
+
+def _information(at: sparse.csr_array, weight: Floats) -> sparse.csr_array:
+    """BᵀWB, (n, n) sparse, mm⁻²."""
+    data = sparse.csr_array(at.T) @ _rows_times(weight, at)
+    data.sort_indices()
+    return data
 
 
 def _rows_times(factors: Floats, matrix: sparse.csr_array) -> sparse.csr_array:

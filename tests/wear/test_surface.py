@@ -123,7 +123,9 @@ def test_what_is_hidden_is_what_the_surface_may_be_beside_the_expected_one():
         triangle[np.arange(below, number), np.arange(number - below)] = band[: number - below]
     whole = triangle @ triangle.T
     u = np.linalg.solve(whole, _over_cells(SHAPE).T @ np.ones(count.size))
-    assert surface.shares(np.ones(SHAPE))[1] == pytest.approx(u @ (whole - surface.data.toarray()) @ u, rel=1e-6)
+    assert surface.shares(np.ones(SHAPE))[1] == pytest.approx(
+        u @ (whole - (surface.at.T * surface.weight @ surface.at).toarray()) @ u, rel=1e-6
+    )
 
 
 def test_the_mean_of_a_full_cell_is_that_of_the_cell_and_of_one_point_the_spline_there():

@@ -25,6 +25,8 @@ _RELATIONS = (
 )
 _STAMP = (2000, 1, 1, 0, 0, 0)
 """The same bytes on every run."""
+AT_ONCE = 1 << 15
+"""Triangles that are worked out before they are written: those of all of a large gear take more room than its scan."""
 
 
 def write_stl(path: Path, bodies: Sequence[Triangles], name: str) -> None:
@@ -39,18 +41,17 @@ def write_stl(path: Path, bodies: Sequence[Triangles], name: str) -> None:
         Goes into the header.
     """
     record = np.dtype([("normal", "<f4", 3), ("corner", "<f4", (3, 3)), ("attribute", "<u2")])
-    count = sum(len(body.faces) for body in bodies)
-    data = np.zeros(count, record)
-    start = 0
-    for body in bodies:
-        corner, normal = body.vertices[body.faces], body.normals
-        length = np.linalg.norm(normal, axis=1, keepdims=True)
-        part = data[start : start + len(corner)]
-        part["normal"] = normal / np.where(length > 0.0, length, 1.0)
-        part["corner"] = corner
-        start += len(corner)
     header = f"{name}, mm, written by gearwear".encode("ascii", "replace")[:80].ljust(80)
-    path.write_bytes(header + np.uint32(count).astype("<u4").tobytes() + data.tobytes())
+    with path.open("wb") as file:
+        file.write(header + np.uint32(sum(len(body.faces) for body in bodies)).astype("<u4").tobytes())
+        for body in bodies:
+            for start in range(0, len(body.faces), AT_ONCE):
+                some = Triangles(body.vertices, body.faces[start : start + AT_ONCE])
+                normal, data = some.normals, np.zeros(len(some.faces), record)
+                length = np.linalg.norm(normal, axis=1, keepdims=True)
+                data["normal"] = normal / np.where(length > 0.0, length, 1.0)
+                data["corner"] = some.vertices[some.faces]
+                file.write(data.tobytes())
 
 
 def write_3mf(path: Path, bodies: Sequence[Triangles], names: Sequence[str]) -> None:
