@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.side import Side
 from gearwear.design.twist import segments, turn_at
 from gearwear.errors import InputError
 
@@ -291,28 +292,52 @@ def nominal_like(profiles: ToothProfiles) -> ToothProfiles:
     return nominal_profiles(profiles.gear, profiles.radius, profiles.z)
 
 
-def tooth_triangles(profiles: ToothProfiles, tooth: int) -> Triangles:
-    """Watertight triangles of one external tooth, cut off straight from root to root."""
+def tooth_triangles(profiles: ToothProfiles, tooth: int, straight: Side | None = None) -> Triangles:
+    """Watertight triangles of one external tooth, cut off straight from root to root; the flank of the side `straight`, where one is given, in
+    strips from end to end."""
     one = replace(profiles, half_angle=profiles.half_angle[tooth : tooth + 1])
-    outline = _turned(outlines(one)[:, : 2 * len(profiles.radius) + 2 * TIP_STEPS - 1], tooth * profiles.gear.pitch_angle)
+    nodes = len(profiles.radius)
+    outline = _turned(outlines(one)[:, : 2 * nodes + 2 * TIP_STEPS - 1], tooth * profiles.gear.pitch_angle)
     slices, around = outline.shape[:2]
-    cap = _tooth_cap(len(profiles.radius))
+    cap = _tooth_cap(nodes)
     walls = _walls(around, np.arange(slices - 1))
+    if straight is not None:
+        first = 0 if straight is Side.RIGHT else around - nodes
+        column = walls[:, 0] % around
+        walls = np.vstack([walls[(column < first) | (column > first + nodes - 2)], _strips(around, slices, first, nodes)])
     faces = np.vstack([walls, cap[:, ::-1], cap + (slices - 1) * around])
-    return Triangles(_stacked(outline, profiles.z), faces.astype(np.int64))
+    used, corner = np.unique(faces, return_inverse=True)
+    return Triangles(_stacked(outline, profiles.z)[used], corner.reshape(-1, 3).astype(np.int64))
+
+
+def _strips(around: int, slices: int, first: int, nodes: int) -> Ints:
+    """Triangles between the first outline of so many points and the last along `nodes` of them from `first` on, (n, 3); the first and the last node
+    have all slices, as what lies beside them."""
+    end = (slices - 1) * around
+    along = np.arange(slices)[:, None] * around
+    low, inner = first + along[:, 0], first + 1
+    outer, high = first + nodes - 2, first + nodes - 1 + along[:, 0]
+    k = np.arange(inner, outer)
+    return np.vstack([
+        np.column_stack([low[:-1], np.full(slices - 1, inner), low[1:]]), [[inner, inner + end, low[-1]]],
+        np.column_stack([k, k + 1, k + 1 + end]), np.column_stack([k, k + 1 + end, k + end]),
+        np.column_stack([np.full(slices - 1, outer), high[:-1], high[1:]]), [[outer, high[-1], outer + end]],
+    ])  # fmt: skip
 
 
 def worn_volume(worn: ToothProfiles, seen: tuple[float, float] = (0.0, 0.0)) -> list[Triangles]:
     """Nominal minus worn gear; as `worn_bodies`, tooth by tooth where what is missing hangs together over no bottom land: a tooth's triangles take a
-    small part of the room of a gear's."""
+    small part of the room of a gear's, and of a spur tooth's side that has lost nothing a few strips do."""
     nominal = nominal_like(worn)
     apart = not worn.gear.spec.internal and worn.gear.spec.gap == 0.0
     if not apart or (worn.half_angle[..., 0] != nominal.half_angle[..., 0]).any():
         return worn_bodies(gear_triangles(nominal), gear_triangles(worn), seen)
-    teeth = np.flatnonzero((worn.half_angle != nominal.half_angle).any(axis=(1, 2, 3))).tolist()
-    bodies = [
-        body for tooth in teeth for body in worn_bodies(tooth_triangles(nominal, tooth), tooth_triangles(worn, tooth), seen)
-    ]
+    lost = (worn.half_angle != nominal.half_angle).any(axis=(2, 3))
+    bodies = list[Triangles]()
+    for tooth in np.flatnonzero(lost.any(axis=1)).tolist():
+        straight = next((side for side in Side if worn.gear.twist == 0.0 and not lost[tooth, side.index]), None)
+        as_new, now = (tooth_triangles(profiles, tooth, straight) for profiles in (nominal, worn))
+        bodies += worn_bodies(as_new, now, seen)
     return sorted(bodies, key=lambda body: -body.volume)
 
 

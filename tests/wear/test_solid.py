@@ -8,7 +8,7 @@ import trimesh
 from manifold3d import Error, Manifold, Mesh64
 
 from gearwear.design.profiles import nominal_profiles
-from gearwear.design.side import sides_of
+from gearwear.design.side import Side, sides_of
 from gearwear.errors import InputError
 from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
@@ -115,6 +115,17 @@ def test_a_tooth_and_what_is_below_it_are_the_gear(solid):
     assert sum(tooth.volume for tooth in teeth) + below == pytest.approx(solid.worn.volume, rel=1e-9)
     for tooth in teeth:
         assert_closed(tooth)
+
+
+@pytest.mark.parametrize("side", Side)
+def test_a_spur_flank_that_lost_nothing_is_as_well_strips_from_end_to_end(solid, side):
+    """A ruled surface, whose rulings they are: the same solid of fewer triangles."""
+    profiles = nominal_like(solid.profiles)
+    whole, strips = tooth_triangles(profiles, 5), tooth_triangles(profiles, 5, side)
+    assert_closed(strips)
+    assert strips.volume == pytest.approx(whole.volume, rel=1e-12)
+    assert strips.area == pytest.approx(whole.area, rel=1e-9)
+    assert len(strips.faces) < 0.7 * len(whole.faces)
 
 
 def test_what_is_missing_down_to_a_bottom_land_is_taken_from_the_whole_gear(solid):
