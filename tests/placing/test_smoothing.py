@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from gearwear.design.surface import flank_points
-from gearwear.placing.smoothing import shared_errors
+from gearwear.placing.smoothing import MOST_PATCHES, PATCH_POINTS, _patches, shared_errors
 from tests.placing.placing import designed
 
 GEAR = designed()
@@ -63,6 +63,20 @@ def test_means_over_neighbours_share_their_errors(number):
     # Neither the size of the errors nor a plane under them is anything of it.
     other = points.with_deviation(10.0 * rough + 0.01 * points.roll + 0.02 * points.position[:, 2])
     assert shared_errors(other) == pytest.approx(ratio, rel=1e-6)
+
+
+@pytest.mark.parametrize("points", [300, 1_000, 20_000])
+def test_patches_are_few_and_from_all_over(points):
+    """Of an even square: every point once at most, and about as many on either side of the middle."""
+    at = np.random.default_rng(4).uniform(-1.0, 1.0, (points, 2))
+    patches = _patches(at)
+    chosen = np.concatenate(patches)
+    assert len(np.unique(chosen)) == len(chosen)
+    assert all(PATCH_POINTS <= len(patch) < 2 * PATCH_POINTS for patch in patches)
+    assert len(patches) <= MOST_PATCHES
+    assert len(patches) > 0.4 * min(points / (2 * PATCH_POINTS), MOST_PATCHES)
+    assert np.abs(at[chosen].mean(axis=0)).max() < 0.15
+    assert (np.ptp(at[chosen], axis=0) > 1.7).all()
 
 
 def test_of_few_points_nothing_is_told():
