@@ -266,7 +266,7 @@ MUTATIONS = [
         ("wear/uncertainty.py", ".sum(axis=0) / 12.0", ".sum(axis=0) / 6.0", "wear/test_uncertainty.py"),
         ("wear/uncertainty.py", "12.0 * apart", "6.0 * apart", "wear/test_uncertainty.py"),
         ("wear/surface.py", "np.maximum(count[seen], 1.0)) / 12.0", "np.maximum(count[seen], 1.0)) / 3.0", "wear/test_surface.py"),
-        ("wear/surface.py", "wanted @ u - u @ (self.data @ u)", "0.1 * (wanted @ u - u @ (self.data @ u))", "wear/test_surface.py"),
+        ("wear/surface.py", "wanted @ u - placed @ (self.weight * placed)", "0.1 * (wanted @ u - placed @ (self.weight * placed))", "wear/test_surface.py"),
         ("wear/surface.py", "tuple(range(-8, 5))", "tuple(range(3, 5))", "wear/test_surface.py"),
         ("wear/volume.py", "+ edge_covariance(self.sheets, self.torn, self.slope, weights)", "", "wear/test_volume.py"),
         ("wear/uncertainty.py", "form @ form.T", "0.0", "wear/test_volume.py"),
