@@ -258,7 +258,7 @@ MUTATIONS = [
         ("wear/limits.py", "value > NORMAL_95 * std", "True", "wear/test_limits.py"),
         ("wear/limits.py", "lost + value", "lost", "wear/test_limits.py"),
         ("wear/limits.py", "sum()) + NORMAL_95 * std", "sum())", "wear/test_limits.py"),
-        ("wear/places.py", "RIM = 0.2", "RIM = 0.0", "wear/test_regions.py"),
+        ("wear/places.py", "RIM = 0.2", "RIM = 0.0", "wear/test_uncertainty.py"),
         ("wear/volume.py", " + np.outer(shared, shared)", "", "wear/test_uncertainty.py"),
         ("wear/volume.py", "np.where(square > variance, 1.0 - variance", "np.where(square > variance, 0.0 * variance", "wear/test_local_damage.py"),
         ("wear/volume.py", "np.where(more > 0.0, more, 0.0)", "more", "wear/test_local_damage.py"),

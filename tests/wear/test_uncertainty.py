@@ -77,6 +77,17 @@ def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monk
     assert len(find_wear(patch, NOISE).regions) == number
 
 
+def test_a_foot_too_shallow_to_be_seen_is_summed_with_what_is_seen():
+    """Round a patch of 50 µm a foot of 2 µm, three cells wide, that 10 µm of noise hides: all that is missing is in the volume, but for the arc of a
+    parallel 50 µm further in (0.1 %). The one cell next to the patch, and one more, would be 1 % short."""
+    cells = every_cell(GEAR, 0.5)
+    flank = flanks_of(cells)
+    flank[4, 0, 5:23, 2:20] = -0.002
+    flank[4, 0, 8:20, 5:17] = -0.05
+    wear = find_wear(with_flanks(cells, flank), 0.01)
+    assert wear.volume == pytest.approx(-flank.sum() * wear.side_maps.area[-1], rel=0.002)
+
+
 def test_what_volumes_of_a_side_have_in_common_is_how_high_it_stands():
     """Four flanks of one side that share 9 µm of level and have noise of their own, three of the other that share nothing, and one by itself."""
     random = np.random.default_rng(5)
