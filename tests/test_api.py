@@ -42,19 +42,27 @@ def proposed() -> Candidates:
     return gw.propose_design(gw.read_scan(scanned()[1]))
 
 
-def fresh(code: str) -> str:
+@cache
+def fresh() -> list[str]:
+    """What a process of its own has loaded once it has imported the package, and read a design; and where a function then comes from whose command was
+    imported."""
+    code = """import sys, gearwear as gw
+print([m for m in ("numpy", "scipy", "matplotlib") if m in sys.modules])
+gw.read_design(gw.example())
+print([m for m in ("matplotlib", "trimesh", "manifold3d") if m in sys.modules])
+import gearwear.commands.compare
+print(gw.compare.__module__)"""
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=ROOT)
     assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
+    return done.stdout.splitlines()
 
 
 class TestNames:
     def test_importing_loads_not_even_numpy(self):
-        assert fresh("import sys, gearwear; print([m for m in ('numpy', 'scipy', 'matplotlib') if m in sys.modules])") == "[]"
+        assert fresh()[0] == "[]"
 
     def test_a_name_loads_no_more_than_it_needs(self):
-        code = "import sys, gearwear as gw; gw.read_design(gw.example()); print([m for m in ('matplotlib', 'trimesh', 'manifold3d') if m in sys.modules])"
-        assert fresh(code) == "[]"
+        assert fresh()[1] == "[]"
 
     def test_every_name_is_there_and_documented(self):
         for name in gw.__all__:
@@ -101,7 +109,7 @@ class TestNames:
             before = getattr(gw, name)
             assert callable(import_module(f"gearwear.commands.{name}").main)
             assert getattr(gw, name) is before
-        assert fresh("import gearwear.commands.compare, gearwear as gw; print(gw.compare.__module__)") == "gearwear.api"
+        assert fresh()[2] == "gearwear.api"
 
 
 class TestStages:
@@ -138,7 +146,7 @@ class TestStages:
         assert about_teeth.settings.axis == "teeth"
         assert about_teeth.settings.noise == 0.05  # of a spur gear along the normal as across it
         assert about_teeth.pitch.index.shared is not None and not about_teeth.pitch.index.shared.any()
-        np.testing.assert_array_equal(about_teeth.pitch.index.value, gw.inspect(real_results().measured).pitch.index.value)
+        np.testing.assert_array_equal(about_teeth.pitch.index.value, real_results().inspection.pitch.index.value)
         with pytest.raises(gw.InputError, match="an axis from the bore needs bore_diameter"):
             gw.inspect(gear, gw.Settings(axis="bore"))
 
