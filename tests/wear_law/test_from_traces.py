@@ -21,7 +21,8 @@ A = 8.0
 
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The command without its pictures, which take longer than all the rest: tests/commands/test_meshing_command.py looks at them."""
+    """The command without its pictures and with few positions, which take longer than all the rest: tests/commands/test_meshing_command.py looks at them."""
+    monkeypatch.setattr("gearwear.meshing.study.POSITIONS", 4)
     for name in ("_write_pictures", "_write_loaded"):
         monkeypatch.setattr(f"gearwear.report.files.meshing.{name}", lambda *given: None)
 
@@ -72,7 +73,12 @@ def test_the_command_says_and_writes_it(tmp_path, capsys, monkeypatch):
 
     for module in ("meshing.worn_gear", "design.files.traces"):
         monkeypatch.setattr(f"gearwear.{module}.read_traces", counted)
-    assert main([str(gw.example()), "--wear", str(traces), "--drive", "left", "--out", str(tmp_path / "out")]) == 0
+    assert (
+        main(
+            [str(gw.example()), "--wear", str(traces), "--drive", "left", "--cycle", "revolution", "--out", str(tmp_path / "out")]
+        )
+        == 0
+    )
     assert "wear law" in capsys.readouterr().out.lower()
     law = json.loads((tmp_path / "out" / "meshing.json").read_text())["wear_law"]
     assert law["fitted"] and law["flank"] == "left" and law["teeth"] == [1, 2, 3, 4, 5]
@@ -82,7 +88,23 @@ def test_the_command_says_and_writes_it(tmp_path, capsys, monkeypatch):
 def _law(text: str, tmp_path: Path) -> dict:
     (tmp_path / "t.csv").write_text(text)
     out = tmp_path / "out"
-    assert main([str(gw.example()), "--wear", str(tmp_path / "t.csv"), "--drive", "left", "--quiet", "--out", str(out)]) == 0
+    assert (
+        main(
+            [
+                str(gw.example()),
+                "--wear",
+                str(tmp_path / "t.csv"),
+                "--drive",
+                "left",
+                "--cycle",
+                "revolution",
+                "--quiet",
+                "--out",
+                str(out),
+            ]
+        )
+        == 0
+    )
     return json.loads((out / "meshing.json").read_text())["wear_law"]
 
 
@@ -145,9 +167,8 @@ rim_diameter = 160.0
 """
 
 
-def test_the_command_fits_the_flanks_of_a_ring_that_face_the_pinions(tmp_path, monkeypatch):
+def test_the_command_fits_the_flanks_of_a_ring_that_face_the_pinions(tmp_path):
     """Left flanks of the pinion carry on right ones of its ring: 20 |K| µm off these, with K = 1 − z2 / z1 (L − T) / L of the ring's flank."""
-    monkeypatch.setattr("gearwear.meshing.study.POSITIONS", 4)
     (tmp_path / "ring.toml").write_text(RING)
     design = gw.read_design(tmp_path / "ring.toml")
     gear, mate = design.gears["gear"], design.gears["pinion"]
