@@ -19,7 +19,7 @@ CHIPS = {
 @pytest.mark.parametrize("kind", CHIPS)
 def test_a_chip_is_told_once_and_one_way(kind):
     scan = make_scan(Recipe(jitter=1.0, noise_um=5.0, wear=CHIPS[kind]).of_size(60_000), 5)
-    measured = gw.find_effects(gw.register(Design({"gear": designed()}), gw.as_scan(scan.points)))
+    measured = gw.find_effects(gw.register(Design({"gear": designed()}), gw.as_scan(scan.points)), frozenset())
     wear = gw.find_wear(measured)
     assert [(one.kind, one.flank) for one in measured.broken] == [(kind, "left")] * len(CHIPS[kind])
     assert not wear.regions and not wear.edges

@@ -44,7 +44,7 @@ def helical(angle):
 @pytest.mark.parametrize("made", [spur, lambda: helical(-18.0), lambda: helical(25.0)], ids=["spur", "left", "right"])
 def test_it_is_told_as_what_it_is_and_not_named(made):
     design, points = made()
-    measured = gw.find_effects(gw.register(design, gw.as_scan(points)))
+    measured = gw.find_effects(gw.register(design, gw.as_scan(points)), frozenset())
     loop = measured.loop
     assert loop is not None and not loop.effects and not loop.worn_sides
     (pattern,) = loop.patterns

@@ -28,7 +28,7 @@ def scan_of_two_views(apart: float) -> np.ndarray:
 
 
 def worn(apart: float) -> tuple[MeasuredGear, Wear]:
-    measured = find_effects(register(Design({"gear": designed()}), as_scan(scan_of_two_views(apart))))
+    measured = find_effects(register(Design({"gear": designed()}), as_scan(scan_of_two_views(apart))), frozenset())
     return measured, find_wear(measured.as_made, measured.noise, measured.worn_sides, measured.loop)
 
 

@@ -36,7 +36,7 @@ def broken(height: float, seen: bool = True):
 
 @cache
 def found(height: float, seen: bool = True):
-    return gw.find_effects(gw.register(Design({"gear": designed(GEAR)}), gw.as_scan(broken(height, seen))))
+    return gw.find_effects(gw.register(Design({"gear": designed(GEAR)}), gw.as_scan(broken(height, seen))), frozenset())
 
 
 @pytest.mark.parametrize("height", [pytest.param(0.7, marks=pytest.mark.long), 1.8])

@@ -34,7 +34,7 @@ OUT_OF_LIMITS = "more than a calibrated scanner may be off by"
 def test_a_scale_bends_no_root_and_keeps_its_name(ppm, drawn):
     gear = Gear.from_spec(replace(designed().spec, rack_tip_radius=drawn))
     recipe = Recipe(noise_um=6.0, jitter=1.0, pose="any", effects=(Effect("scale", {"relative_ppm": ppm}),)).of_size(20_000)
-    measured = find_effects(register(Design({"gear": gear}), as_scan(make_scan(recipe, 13).points)))
+    measured = find_effects(register(Design({"gear": gear}), as_scan(make_scan(recipe, 13).points)), frozenset())
 
     assert measured.root.rack_tip_radius == pytest.approx(AS_CUT, abs=0.004)  # 0.32 and 0.28 where the scale is taken for its own
     assert measured.root.fits_design == (drawn == AS_CUT)

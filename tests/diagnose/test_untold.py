@@ -27,7 +27,8 @@ def closed(seed: int, *wear, spread_um: float = 10.0):
     scan = make_scan(recipe.of_size(20_000), seed)
     located = locate(scan.points, GEAR)
     cells = bin_points(located, CellGrid.for_scan(GEAR, len(located)), clip=0.4)
-    return cells, close_loop(cells, noise(cells), make_context(cells, np.eye(3), False)), own, scan.truth.volume_mm3
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), worn=frozenset())
+    return cells, loop, own, scan.truth.volume_mm3
 
 
 def each_tooth(loop):

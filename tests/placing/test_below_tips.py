@@ -39,7 +39,7 @@ def test_points_higher_than_the_tips_stay_where_they_lie(shrunk):
 def test_a_scan_too_small_is_that_and_has_no_form(shrunk):
     """The lands next to the corners were laid on the drawn flanks, and the root fitted first to the fillets of a smaller gear: a relief, a crowning and another
     relief in place of the scale."""
-    loop = find_effects(register(Design({"gear": designed(SMALL)}), as_scan(shrunk.points))).loop
+    loop = find_effects(register(Design({"gear": designed(SMALL)}), as_scan(shrunk.points)), frozenset()).loop
     named = {effect.name: effect for effect in loop.effects}
     assert set(named) == {"scale", "pitch"}
     known = named["scale"].parameters["relative_ppm"]
