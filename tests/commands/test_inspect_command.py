@@ -136,8 +136,7 @@ def test_the_other_edition_and_no_loop(tmp_path):
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_a_k_band_and_gauges_of_ones_own(tmp_path):
-    files, _ = scan_file(tmp_path, "made", MADE.of_size(30_000), 8)
+def test_a_k_band_and_gauges_of_ones_own(tmp_path, thin):
     band = "[profile]\nroll_angle_deg = [8, 40]\nlower_um = [-5, -5]\nupper_um = [5, 5]\n"  # 40 µm of slope do not fit
     (tmp_path / "k.toml").write_text(band, encoding="utf-8")
     options = [
@@ -151,7 +150,7 @@ def test_a_k_band_and_gauges_of_ones_own(tmp_path):
         "11.5",
         "--no-loop",
     ]
-    said = run("inspect", PAIR, *files, *options, "--out", tmp_path / "out")
+    said = run("inspect", PAIR, *thin, *options, "--out", tmp_path / "out")
     assert (said.status, said.err) == (0, "")
     lines = said.out.splitlines()
     assert len(lines) <= 24 and max(map(len, lines)) <= 80
@@ -168,10 +167,9 @@ def test_a_k_band_and_gauges_of_ones_own(tmp_path):
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_bands_of_a_class_are_over_the_ranges_that_were_asked_for(tmp_path):
-    files, _ = scan_file(tmp_path, "made", MADE.of_size(30_000), 8)
+def test_bands_of_a_class_are_over_the_ranges_that_were_asked_for(tmp_path, thin):
     ranges = ["--profile-roll-mm", "8,20", "--helix-z-mm", "5,12"]
-    said = run("inspect", PAIR, *files, "--no-loop", "--class", 7, "--k-band", "class", *ranges, "--out", tmp_path / "out")
+    said = run("inspect", PAIR, *thin, "--no-loop", "--class", 7, "--k-band", "class", *ranges, "--out", tmp_path / "out")
     assert (said.status, said.err) == (0, "")
     record = strict_json(tmp_path / "out" / "inspection.json")["inspection"]
     assert record["profile"]["range_roll_mm"] == record["profile"]["k_bands"]["left"]["roll_mm"] == [8.0, 20.0]

@@ -33,7 +33,7 @@ def folder(tmp_path_factory):
 
 def written(folder, name: str, seed: int, *wear: SlidingWear):
     """A scan in the design's frame with all of its tips chamfered, as text; and what wear took from flanks below the bevels, mm³."""
-    recipe = Recipe(gear=NUMBERS, jitter=1.0, noise_um=6.0, texture=Texture(2.0, 1.0), wear=wear, pose="none").of_size(60_000)
+    recipe = Recipe(gear=NUMBERS, jitter=1.0, noise_um=6.0, texture=Texture(2.0, 1.0), wear=wear, pose="none").of_size(40_000)
     scan = make_scan(recipe, seed)
     file = folder / f"{name}.xyz"
     file.write_text("\n".join(f"{x:.4f} {y:.4f} {z:.4f}" for x, y, z in bevelled(scan.points, NUMBERS, FLANK, LAND)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -18,31 +19,34 @@ from tests.synthetic import Effect, GearNumbers, Recipe, make_scan
 WHEEL = GearNumbers(teeth=24, module=4.0, face_width=12.0, rack_tip_radius=0.38)
 
 
-def scanned(numbers: GearNumbers, effects: tuple[Effect, ...] = (), noise_um: float = 8.0, seed: int = 3):
-    return make_scan(Recipe(gear=numbers, effects=effects, noise_um=noise_um).of_size(60_000), seed).views[0]
+def scanned(*effects: Effect):
+    return as_scan(make_scan(Recipe(gear=WHEEL, effects=effects, noise_um=8.0).of_size(60_000), 3).views[0])
 
 
-def found(points, drawn: GearNumbers):
-    measured = register(Design({"gear": designed(drawn)}, None), as_scan(points))
-    return measured.root
+def laid_on(drawn: GearNumbers, scan):
+    return register(Design({"gear": designed(drawn)}, None), scan)
 
 
-@pytest.fixture(scope="module")
-def wheel():
-    return scanned(WHEEL)
+plain = cache(scanned)
+
+
+@cache
+def measured(drawn: GearNumbers = WHEEL):
+    """The wheel as it is, laid on a drawing."""
+    return laid_on(drawn, plain())
 
 
 @pytest.mark.parametrize("stated", [0.25, pytest.param(0.30, marks=pytest.mark.long), 0.38])
-def test_the_racks_tip_radius_is_found_whatever_the_design_says(wheel, stated):
-    root = found(wheel, replace(WHEEL, rack_tip_radius=stated))
+def test_the_racks_tip_radius_is_found_whatever_the_design_says(stated):
+    root = measured(replace(WHEEL, rack_tip_radius=stated)).root
     assert root.seen and not root.free
     assert root.rack_tip_radius == pytest.approx(0.38, abs=0.015)
     assert root.fits_design == (stated == 0.38)
     assert ("a rack tip radius of 0.3" in root.words()) != root.fits_design
 
 
-def test_a_wrong_dedendum_is_found_too(wheel):
-    root = found(wheel, replace(WHEEL, dedendum=1.30))
+def test_a_wrong_dedendum_is_found_too():
+    root = measured(replace(WHEEL, dedendum=1.30)).root
     assert not root.fits_design
     assert root.dedendum == pytest.approx(1.25, abs=0.005)
 
@@ -59,15 +63,13 @@ def test_a_wrong_dedendum_is_found_too(wheel):
     ids=lambda e: e.name,
 )
 def test_what_scanner_and_maker_add_is_no_other_root(effect):
-    root = found(scanned(WHEEL, (effect,)), WHEEL)
+    root = laid_on(WHEEL, scanned(effect)).root
     assert root.fits_design, root
 
 
-def test_a_root_that_no_round_rack_tip_makes_is_free(wheel):
+def test_a_root_that_no_round_rack_tip_makes_is_free():
     """Half the fillet filled up by a fifth of a millimetre, as a protuberance or grinding leaves it, on every tooth alike."""
-    gear = designed(WHEEL)
-    measured = register(Design({"gear": gear}, None), as_scan(wheel))
-    located = measured.located
+    gear, located = designed(WHEEL), measured().located
     radius = np.hypot(located.position[:, 0], located.position[:, 1])
     low, high = gear.root_radius, gear.form_radius
     share = np.clip((radius - low) / (high - low), 0.0, 1.0)
@@ -76,16 +78,14 @@ def test_a_root_that_no_round_rack_tip_makes_is_free(wheel):
     assert root.free and "no datum" in root.words()
 
 
-def test_a_scan_without_roots_says_nothing_of_them(wheel):
-    gear = designed(WHEEL)
-    measured = register(Design({"gear": gear}, None), as_scan(wheel))
-    located = measured.located
+def test_a_scan_without_roots_says_nothing_of_them():
+    gear, located = designed(WHEEL), measured().located
     root = fit_root(located.take(np.hypot(*located.position[:, :2].T) > gear.form_radius + 0.2), gear)
     assert not root.seen and root.gear is gear and root.words() == ""
 
 
-def test_refitting_keeps_the_other_dimensions(wheel):
-    root = found(wheel, replace(WHEEL, rack_tip_radius=0.25))
+def test_refitting_keeps_the_other_dimensions():
+    root = measured(replace(WHEEL, rack_tip_radius=0.25)).root
     drawn, fitted = designed(replace(WHEEL, rack_tip_radius=0.25)), root.gear
     assert isinstance(fitted, Gear)
     assert (fitted.tip_radius, fitted.base_radius, fitted.tooth_thickness, fitted.face_width) == (

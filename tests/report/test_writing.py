@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearwear.errors import InputError
@@ -67,6 +67,7 @@ values = st.recursive(
 )
 
 
+@settings(max_examples=40)
 @given(values)
 def test_any_report_becomes_json_that_every_reader_takes(value):
     text = json.dumps(finite(value), allow_nan=False)
