@@ -52,6 +52,13 @@ MUTATIONS = [
         ("inspection/radial.py", "0.01 * math.sqrt(d) + 0.8", "0.01 * math.sqrt(d) + 0.08", "inspection/test_radial.py"),
         ("inspection/radial.py", "1.0, 1.5, 2.5, 4.0", "1.0, 1.5, 2.0, 4.0", "inspection/test_radial.py"),
         ("brep/ends.py", "END_TOLERANCE = 2e-8", "END_TOLERANCE = 2e-3", "brep/test_ends.py"),
+        # a mate narrower than the face
+        ("diagnose/active_face.py", "misfit[fitted[:, -1] <= 0.0] = math.inf", "pass", "diagnose/core/test_active_face.py"),
+        ("diagnose/active_face.py", "rules().effect_penalty + rules().close", "-100.0", "diagnose/core/test_active_face.py"),
+        ("diagnose/active_face.py", "<= rules().blank_flanks", "<= 1.0", "diagnose/core/test_active_face.py"),
+        ("diagnose/loop.py", "worn &= ~face.margins(fit.cells)", "pass", "diagnose/core/test_active_face.py"),
+        ("diagnose/loop.py", "always |= {FACE_LEVEL}", "pass", "diagnose/core/test_active_face.py"),
+        ("diagnose/found.py", "size = 0.5 * helix_form_tolerance", "size = 0.005 * helix_form_tolerance", "diagnose/core/test_active_face.py"),
         # views brought to each other
         ("placing/accord.py", "STDS = 5.0", "STDS = 50.0", "placing/test_together.py"),
         ("placing/accord.py", "raised * covariance, information / raised", "9.0 * covariance, information / raised", "placing/test_together.py"),

@@ -12,7 +12,7 @@ import numpy as np
 from benchmarks.families import draws, effects
 from benchmarks.families.case import Case
 from benchmarks.families.draws import Rng, log_uniform
-from benchmarks.families.fields import EndRelief, Even, Field, Index, Polynomial, Relief, Ripple, RoundWave
+from benchmarks.families.fields import EndRelief, Even, Field, Index, Polynomial, Relief, Ripple, RoundWave, Within
 from benchmarks.families.instrument import AlongAxis, Between, Coat, OneSide, Outer, RoundGear, Sector, Turntable, Unseen
 from benchmarks.families.part import Part
 from benchmarks.families.rack import Tool
@@ -489,6 +489,35 @@ def _files(rng: Rng, points: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _narrow_mate(rng: Rng, points: int) -> dict[str, Any]:
+    """Worn by a mate that is narrower than the face: flanks as cut beside it at one end or both; exact, or cut in class 5 to 8."""
+    g, tools, f = _plain(rng)
+    quality = int(rng.choice([0, 5, 6, 7, 8]))
+    low, high = (float(rng.uniform(0.08, 0.25)) * f.width * (rng.random() < 0.85) for _ in range(2))
+    if low == high == 0.0:
+        high = 0.2 * f.width
+    edge = log_uniform(rng, 0.05, 0.5)
+    depth, even, alike = log_uniform(rng, 0.010, 0.08), bool(rng.random() < 0.4), bool(rng.random() < 0.5)
+    first, both = int(rng.choice([-1, 1])), bool(rng.random() < 0.5)
+    wear = []
+    for side, deep in ((first, depth), (-first, depth * float(rng.uniform(0.4, 1.0))))[: 1 + both]:
+        loss = draws.sliding(rng, f, side, deep, alike)
+        own = Even(side, deep, loss.factors) if even else loss
+        wear.append(Within(own, low if low > 0.0 else -edge, f.width - high if high > 0.0 else f.width + edge, edge))
+    made = draws.as_cut(rng, f, quality) if quality else ()
+    scanner = draws.scanner(rng, g, points)
+    there = (
+        "pitch", "thickness_variation", "tooth_thickness", "profile_shift", "profile_slope", "profile_crowning", "helix_slope", "helix_crowning", "taper",
+        "twist", "eccentricity", "axis_offset_lateral",
+    )  # fmt: skip
+    return {
+        "what": f"{'both sides' if both else 'one side'}, ledges at {'both ends' if low > 0.0 < high else 'one end'}, {'even' if even else 'sliding'}",
+        "part": Part(g, tools, tuple(made), tuple(wear)), "design": draws.design_of(g, tools[0]), "scanner": scanner,
+        "may_name": (*(there if quality else ()), *_also(scanner)), "near": ("tip_relief", "root_relief", "end_relief"),
+        "outside": f"form errors of class {quality}" if quality else "",
+    }  # fmt: skip
+
+
 FAMILIES: Mapping[str, Family] = {
     "a": Family("unknown root", _root),
     "b": Family("modified profiles", _profiles),
@@ -508,4 +537,5 @@ FAMILIES: Mapping[str, Family] = {
     "p": Family("some flanks worn all over", _some_flanks),
     "q": Family("several files, one of them wrong", _files),
     "r": Family("class 5 to 9, every flank cut as itself", _each_flank),
+    "s": Family("a mate narrower than the face", _narrow_mate),
 }

@@ -250,6 +250,23 @@ class Even:
         return np.where(side == self.side, -loss, 0.0)
 
 
+@dataclass(frozen=True)
+class Within:
+    """A loss where the mate ran alone, from `low` to `high` along the face; its edges are broken over `edge`, mm, there the loss runs out."""
+
+    loss: Even | Sliding
+    low: float
+    high: float
+    edge: float
+
+    @property
+    def side(self) -> int:
+        return self.loss.side
+
+    def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
+        return self.loss(f, tooth, side, roll, z) * np.clip((np.minimum(z - self.low, self.high - z)) / self.edge, 0.0, 1.0)
+
+
 @dataclass(frozen=True, eq=False)
 class Pits:
     """Small round pits on some flanks: rows (tooth, side, roll, z, radius, depth), each a bowl with a flat rim."""

@@ -130,7 +130,7 @@ class OpenVolume:
     def thin_or_worn(self) -> float:
         """What the teeth would have lost were they worn evenly to where they are, and not cut thinner than drawn, mm³; 0 where that is within the
         volume's standard deviation, and where a scan of the gear unworn shows what was made so."""
-        if self.measured.loop is None or self.unworn_seen:
+        if self.measured.loop is None or self.unworn_seen or self.measured.loop.context.faces:  # what no mate touched is as thin
             return 0.0
         cells = self.measured.cells
         depth = self.measured.loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK)))
@@ -142,15 +142,15 @@ class OpenVolume:
         """What of the volume the sides worn throughout have lost all over alike, mm³; 0 where that is within the volume's standard deviation, where
         the tolerance of the thickness is stated, and where a scan of the gear unworn shows what was made so."""
         stated = self.measured.gear.spec.tolerance.thickness is not None
-        if self.measured.loop is None or self.unworn_seen or stated or not self.measured.worn_sides:
+        if self.measured.loop is None or self.unworn_seen or stated or not level_open(self.measured):
             return 0.0
         toothed = self.measured.cells.grid.toothed
-        lost = even_part(self.found.side_maps, self.measured.worn_sides, self.measured.loop.as_made_std, toothed)
+        lost = even_part(self.found.side_maps, level_open(self.measured), self.measured.loop.as_made_std, toothed)
         return lost if lost > self.found.volume_std else 0.0
 
     def even_depth(self, side: Side) -> float:
         """How much of the depth of a worn flank its side has lost all over alike, mm, where that may be thinner teeth; 0 where it is none of that."""
-        if self.even_or_thin <= 0.0 or side not in self.measured.worn_sides:
+        if self.even_or_thin <= 0.0 or side not in level_open(self.measured):
             return 0.0
         assert self.measured.loop is not None
         return even_depth(self.found.side_maps, side, self.measured.loop.as_made_std, self.measured.cells.grid.toothed)
@@ -162,15 +162,21 @@ class OpenVolume:
         return self.found.side_maps.flank_row * grid.gear.teeth * int(grid.toothed.sum())
 
 
+def level_open(measured: MeasuredGear) -> frozenset[Side]:
+    """Sides worn throughout of which no flank shows beside where its mate ran how high it was made."""
+    faces = () if measured.loop is None else measured.loop.context.faces
+    return measured.worn_sides - {face.side for face in faces}
+
+
 def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:
     """What the stated tolerance of the tooth thickness leaves open of the volume, mm³; None where none is stated or no side is worn throughout.
 
     Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r · cos β_b / cos β`` along the normal all over its flanks.
     """
     tolerance = measured.gear.spec.tolerance.thickness
-    if tolerance is None or not measured.worn_sides:
+    if tolerance is None or not level_open(measured):
         return None
     gear = measured.gear
-    area = sum(region.area for region in wear.regions if region.side in measured.worn_sides)
+    area = sum(region.area for region in wear.regions if region.side in level_open(measured))
     per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)  # the tolerance is of the normal arc
     return tolerance * gear.base_radius / gear.reference_radius * per_arc * area

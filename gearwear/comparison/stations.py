@@ -223,10 +223,11 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells, or
     where what the loop found leaves none."""
     datum, loop = measured.placed.registration.datum, measured.loop
-    if datum.low and (before or (loop is not None and not _still_low(measured, loop))):
+    faces = () if loop is None else loop.context.faces
+    if datum.low and (before or (loop is not None and (faces or not _still_low(measured, loop)))):
         return _with_datum(measured, replace(datum, low=0.0))
     side = datum.worn_side
-    both = loop is not None and len(loop.worn_sides) == 2  # then the other side is no datum either, and `worn_notes` says so
+    said = faces or (loop is not None and len(loop.worn_sides) == 2)  # the other side is no datum either: `worn_notes` says so
     if side is None:
         return measured
     told = {region.tooth for region in wear.regions if region.side is side}
@@ -240,7 +241,7 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
         borne_out = f"{looks} used as datum; the {side.opposite} (coast) flanks are assumed unworn"
     else:
         borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them")
-    return _with_datum(measured, replace(datum, borne_out="" if both else borne_out))
+    return _with_datum(measured, replace(datum, borne_out="" if said else borne_out))
 
 
 def _with_datum(measured: MeasuredGear, datum: Datum) -> MeasuredGear:
@@ -263,8 +264,8 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
     loop = measured.loop
     if loop is None:
         return ()
-    notes = []
-    if len(loop.worn_sides) == 2:
+    notes = _where_the_mate_ran(loop, measured.gear.face_width)
+    if len(loop.worn_sides - {face.side for face in loop.context.faces}) == 2:
         plain = [
             side for side in sorted(loop.worn_sides, reverse=True) if not any(region.side is side for region in wear.regions)
         ]
@@ -312,6 +313,19 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
             " what has the shape of sliding does not hang on it"
         )
     return tuple(notes)
+
+
+def _where_the_mate_ran(loop: Loop, width: float) -> list[str]:
+    """What flanks beside where their mate ran tell, a sentence for each stretch."""
+    faces, notes = loop.context.faces, list[str]()
+    for low, high in dict.fromkeys((round(face.low, 1), round(face.high, 1)) for face in faces):
+        sides = [str(face.side) for face in faces if (round(face.low, 1), round(face.high, 1)) == (low, high)]
+        ends = " and ".join(end for end, there in (("below", low > 0.0), ("above", high < round(width, 1))) if there)
+        notes.append(
+            f"the {' and '.join(sides)} flanks are worn from z = {low:.1f} to {high:.1f} mm, where the mate ran: {ends} they stand as they were made, and tell how"
+            " high they were cut"
+        )
+    return notes
 
 
 def edge_notes(wear: Wear) -> tuple[str, ...]:

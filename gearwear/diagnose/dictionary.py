@@ -13,6 +13,7 @@ from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
 from gearwear.design.twist import has_screw
 from gearwear.diagnose.columns import CellColumns, cuts_of
 from gearwear.diagnose.effects.base import Context, Effect, Kind, Shape
+from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.placing.cells import CellGrid, Cells
 
 
@@ -89,8 +90,8 @@ class Dictionary:
 
     @property
     def offsets(self) -> tuple[Candidate, ...]:
-        """Those of one column: how far tips, ends and bore lie off the drawn ones. A fit without them takes a whole surface for torn."""
-        return tuple(c for c in self.levels if len(c.columns) == 1)
+        """Levels of whole surfaces: how far tips, ends and bore lie off the drawn ones, or flanks of each side. A fit without them takes a whole surface for torn."""
+        return tuple(c for c in self.levels if c.name != ROOT_FORM)
 
     def with_candidate(self, effect: Effect, shape: Shape, basis: Floats) -> tuple[Dictionary, Candidate]:
         """The dictionary with one more candidate (a refined shape)."""

@@ -84,7 +84,7 @@ class Fit:
         offsets = self.dictionary.offsets
         columns = np.hstack([self.columns(offsets), np.ones((len(self.target), 1))])
         residual = self.target - np.median(self.target[self.use])
-        for surface in columns[:, -1 - len(offsets) : -1].T != 0.0:  # one that lies off as a whole is not torn
+        for surface in columns[:, len(self.dictionary.pose) : -1].T != 0.0:  # one that lies off as a whole is not torn
             if (surface & self.use).any():
                 residual[surface] = self.target[surface] - np.median(self.target[surface & self.use])
         amplitudes = np.zeros(columns.shape[1])

@@ -13,12 +13,14 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
+from gearwear.diagnose.active_face import active_faces
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import Candidate, build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
 from gearwear.diagnose.effects.edge_rounding import EDGE_ROUNDING
+from gearwear.diagnose.effects.face_level import FACE_LEVEL
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.effects.sliding_wear import SLIDING_WEAR
 from gearwear.diagnose.elimination import eliminate
@@ -70,7 +72,7 @@ class Searched:
     @property
     def worn(self) -> frozenset[Side]:
         """Sides taken for worn throughout."""
-        return self.problem.context.worn
+        return self.problem.context.worn_sides
 
 
 def close_loop(
@@ -115,26 +117,34 @@ def close_loop(
 
     apart = np.zeros(len(cells.count), dtype=np.bool_)
 
+    context, alone = _with_margins(context, cells, worn)
+    if context.faces:
+        always |= {FACE_LEVEL}
+    if len(context.faces) == len(Side):  # how thick the teeth were cut is in these levels, and fillets tell no more of it
+        always |= {ROOT_FORM}
+        made = tuple(effect for effect in made if effect.group != LEVEL_GROUP or effect.kind is not Kind.MANUFACTURE)
+
     def searched_without(sides: frozenset[Side]) -> Searched:
         return _first_search(cells, noise, replace(context, worn=sides), made, always, out, apart, begun)
 
-    plain = searched_without(worn or NO_SIDE)
+    plain = searched_without(alone)
     low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
     if _still_in(plain, low):
         apart = cells.grid.on_flanks(low)
-        plain = searched_without(plain.worn)
-    costs = SideCosts({plain.worn: 0.0})
-    if worn is None:  # whether a side is worn throughout the others tell
+        plain = searched_without(alone)
+    costs = SideCosts({alone: 0.0})
+    decided = worn is not None or bool(context.faces)
+    if not decided:  # whether a side is worn throughout the others tell
         others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
         costs = side_costs(others_alone, plain.problem, plain.model, noise)
 
     def explained(sides: frozenset[Side]) -> Loop:
-        loop = _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
+        loop = _explained(plain if sides == alone else searched_without(sides), noise, always)
         return with_untold(replace(loop, worn_flanks=low if apart.any() else None), cells)
 
     taken = explained(costs.chosen)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
-    refuted = worn is None and _refuted(taken, cells, flanks)
+    refuted = not decided and _refuted(taken, cells, flanks)
     if refuted:
         taken = explained(frozenset(Side))
     others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
@@ -142,6 +152,14 @@ def close_loop(
     if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
         named = tuple(_or_smoothing(effect) for effect in named)
     return replace(taken, effects=named, others=others, sides_sure=not refuted and not apart.any() and costs.beyond_doubt)
+
+
+def _with_margins(context: Context, cells: Cells, worn: frozenset[Side] | None) -> tuple[Context, frozenset[Side]]:
+    """What of the sides `worn`, or that show where their mate ran, the cells show beside it; and the sides that are left out all over."""
+    faces = tuple(face for face in context.faces if worn is None or face.side in worn)
+    shown = tuple(face for face in faces if face.margins(cells).any())
+    sides = frozenset(face.side for face in faces) | (worn or NO_SIDE)
+    return replace(context, faces=shown), sides - {face.side for face in shown}
 
 
 def _or_smoothing(effect: FoundEffect) -> FoundEffect:
@@ -179,7 +197,8 @@ def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks:
             if other.worn_sides > taken.worn_sides and effect.name not in (named.name for named in other.effects):
                 worn.add(SLIDING_WEAR)
     like_wear = effect.candidate.effect.like_even_wear(effect.amplitudes, effect.candidate.shape, taken.context)
-    if effect.kind is Kind.MANUFACTURE and (like_wear or effect.lowers_by(flanks, taken.context) > 0.0):
+    lowers = effect.lowers_by(flanks, taken.context) > 0.0 and not taken.context.faces  # what no mate touched is as low
+    if effect.kind is Kind.MANUFACTURE and (like_wear or lowers):
         worn.add(ABRASIVE_WEAR)
     return effect.or_one_of(worn)
 
@@ -202,9 +221,9 @@ def _first_search(
     begun: Loop | None,
 ) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out, and those `apart`."""
-    worn, dictionary = context.worn, build_dictionary(cells, effects, context)
+    dictionary = build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
-    sound = sound_cells(cells, worn, context.fillets_told) & ~rounded_ends(cells, noise) & ~apart
+    sound = sound_cells(cells, context.worn, context.fillets_told, context.faces) & ~rounded_ends(cells, noise) & ~apart
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
@@ -234,7 +253,7 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, kept, noise, known)
     if not context.fillets_told:
-        fit = _with_fillets(fit, sound_cells(fit.cells, searched.worn))
+        fit = _with_fillets(fit, sound_cells(fit.cells, context.worn, faces=context.faces))
         problem = fit.problem(problem.unit, context, always)
     loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
     unsized = {effect.name for effect in loop.effects if not effect.is_sized} - always
@@ -273,6 +292,8 @@ def _search(
         worn = worn_mask(fit.cells, residual, noise, caution)
         if round_ == 0 and out is not None:
             worn |= out
+        for face in context.faces:  # no mate touched them: where they stand is what is to be found
+            worn &= ~face.margins(fit.cells)
         if any(candidate.effect.tooth_specific for candidate in model):
             worn |= whole_flanks(fit.cells, plain, worn & sound, sound)
         use = sound & ~worn & not_stray(residual, sound)
@@ -358,7 +379,7 @@ def make_context(
     shift = min(float(np.median(tips)), 0.0) if len(tips) else 0.0
     return Context(
         gear=cells.grid.gear, surfaces=present, scan_axes=scan_axes, planar=planar, mate=mate, row_height=rows, scale_limit=limit,
-        fillet_edges=edges, tip_shift=shift,
+        fillet_edges=edges, tip_shift=shift, faces=active_faces(cells),
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, TIP
 from gearwear.design.twist import section_angle
+from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
 from gearwear.placing.low_tips import OFF
@@ -20,8 +21,8 @@ UPPER = 0.9
 """Quantile for the highest of many; numerical."""
 
 
-def sound_cells(cells: Cells, worn: frozenset[Side], fillets_told: bool = True) -> Bools:
-    """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout; not on fillets that nobody knows.
+def sound_cells(cells: Cells, worn: frozenset[Side], fillets_told: bool = True, faces: tuple[ActiveFace, ...] = ()) -> Bools:
+    """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout, nor where its mate ran; not on fillets that nobody knows.
 
     What levels for their columns leave of fillets that are far from the design's bends as a coat over teeth that are too thin.
     """
@@ -33,9 +34,13 @@ def sound_cells(cells: Cells, worn: frozenset[Side], fillets_told: bool = True) 
     roll = np.nan_to_num(p.roll)
     away = (p.surface != FLANK) | (gear.orientation * roll > gear.orientation * gear.form_roll + edge)
     # Wear of a whole side runs out in the cells of the fillet next to it.
-    worn_out = np.isin(p.side, [int(side) for side in worn]) & ((p.surface == FLANK) | above_last_fillet_edge(cells))
+    worn_out = np.isin(p.side, [int(side) for side in worn])
+    for face in faces:
+        worn_out |= face.worn(p, cells.grid.row_height)
+    worn_out &= (p.surface == FLANK) | above_last_fillet_edge(cells)
     known = (p.surface != FILLET) | fillets_told
-    return np.asarray(seen & enough & away & known & _off_corners(cells, worn) & _off_ends(cells) & ~worn_out & ~_pitted(cells))
+    corners = _off_corners(cells, worn | {face.side for face in faces})
+    return np.asarray(seen & enough & away & known & corners & _off_ends(cells) & ~worn_out & ~_pitted(cells))
 
 
 def above_last_fillet_edge(cells: Cells) -> Bools:

@@ -107,7 +107,7 @@ def carried(loop: Loop, pooled: Cells, cells: Cells, noise: float) -> Loop:
     before, after = (
         np.where(seen, measured - on_cells(mean - residual), 0.0) for residual in (loop.residual_before, loop.residual_after)
     )
-    use = sound_cells(cells, loop.worn_sides) & (on_cells(loop.use.astype(np.float64)) > 0.0)
+    use = sound_cells(cells, loop.context.worn, faces=loop.context.faces) & (on_cells(loop.use.astype(np.float64)) > 0.0)
     whole = replace(
         loop,
         use=use,

@@ -288,6 +288,12 @@ class Rules:
         "standard deviation of the teeth's shares of a loss, in their mean, below which all teeth may have been cut so",
         off=0.0,
     )
+    margin_rows: int = rule(
+        2,
+        "rows",
+        "derived",
+        "rows of cells beside where the mate ran, at least: one is an edge, which may be rounded or carry a burr",
+    )
     least_load: float = rule(
         1.0 / 6.0,
         "1",

@@ -20,6 +20,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import cell_basis
+from gearwear.diagnose.effects.face_level import FACE_LEVEL
 from gearwear.diagnose.found import Loop
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.rules import rules
@@ -142,9 +143,10 @@ def model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     seen, context = cells.seen, loop.context
     motion = [0, 1, 5] if context.planar else list(range(6))
     columns = [np.where(seen[:, None], cells.motion[:, motion], 0.0)]
-    fields = np.zeros((len(seen), len(loop.effects)))
+    told = (*loop.effects, *(level for level in loop.form if level.name == FACE_LEVEL))
+    fields = np.zeros((len(seen), len(told)))
     points = cells.points.take(seen)
-    for i, traced in enumerate(loop.effects):
+    for i, traced in enumerate(told):
         effect, shape = traced.candidate.effect, traced.candidate.shape
         basis = np.zeros((len(seen), len(traced.amplitudes)))
         basis[seen] = cell_basis(effect, points, context, shape, cells.grid)

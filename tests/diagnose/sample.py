@@ -9,8 +9,10 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import SurfacePoints, locate
+from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.base import Context, Shape
 from gearwear.diagnose.parameter import Role
@@ -208,4 +210,6 @@ def context(numbers: GearNumbers = BORED, axes: Floats | None = None, planar: bo
     about = Context(
         gear, frozenset(sample(numbers).surface.tolist()), np.eye(3) if axes is None else axes, planar, (teeth / gear.teeth, line)
     )
-    return replace(about, fillet_edges=edges)
+    width = gear.face_width
+    ran = (ActiveFace(Side.LEFT, 0.2 * width, 0.7 * width), ActiveFace(Side.RIGHT, 0.0, 0.8 * width))
+    return replace(about, fillet_edges=edges, faces=ran)

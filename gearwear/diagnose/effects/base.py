@@ -19,6 +19,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
 from gearwear.design.twist import helix_coordinate
+from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.parameter import ParameterEstimate as ParameterEstimate
 
@@ -78,6 +79,8 @@ class Context:
         Whether the fillets are the design's, or near enough that a level for each column of cells tells how they stand.
     worn : frozenset of Side
         Sides worn throughout, whose flanks are left out: what they were made like only the other side's tell, and no fillet.
+    faces : tuple of ActiveFace
+        Sides worn where their mate ran, whose flanks beside it are as made and are not left out.
     absent : frozenset of int
         Teeth that are missing or were not seen: what each tooth has of its own is not known of these.
     views_apart : bool
@@ -95,8 +98,14 @@ class Context:
     tip_shift: float = 0.0
     fillets_told: bool = True
     worn: frozenset[Side] = frozenset()
+    faces: tuple[ActiveFace, ...] = ()
     absent: frozenset[int] = frozenset()
     views_apart: bool = False
+
+    @property
+    def worn_sides(self) -> frozenset[Side]:
+        """Sides worn throughout, with and without flanks beside where the mate ran."""
+        return self.worn | {face.side for face in self.faces}
 
     @property
     def pitch_roll(self) -> float:

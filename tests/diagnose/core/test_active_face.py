@@ -1,0 +1,135 @@
+"""Where the mate ran, from flanks whose heights are known because they were put in."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gearwear.design.side import Side
+from gearwear.design.surface import FLANK, locate
+from gearwear.diagnose.active_face import active_faces
+from gearwear.diagnose.loop import close_loop, make_context
+from gearwear.placing.cells import CellGrid, bin_points, noise
+from gearwear.wear.regions import find_wear
+from tests.placing.placing import designed
+from tests.synthetic import Recipe, make_scan
+
+GEAR = designed()
+WIDTH, TEETH = GEAR.face_width, GEAR.teeth
+
+
+def scanned(seed=3, points=30_000):
+    """Points of an unworn gear, 6 µm of noise, in the design frame."""
+    recipe = Recipe(jitter=1.0, noise_um=6.0, pose="none", fillets_follow=False)
+    return locate(make_scan(recipe.of_size(points), seed).points, GEAR)
+
+
+SOUND = scanned()
+
+
+def cells_with(heights, points=SOUND):
+    """The cells of the scan with `heights` of tooth, side and ζ, mm, added to its flanks."""
+    zeta = points.position[:, 2] / WIDTH - 0.5
+    added = np.where(points.surface == FLANK, heights(points.tooth, points.side, zeta), 0.0)
+    moved = points.with_deviation(points.deviation + added)
+    return bin_points(moved, CellGrid.for_scan(GEAR, len(points)), clip=0.4)
+
+
+def low_between(low, high, depth, side=0, teeth=None):
+    """A loss of `depth` mm from z = low to high, on the flanks of a side or of both, of all teeth or those of a share."""
+
+    def heights(tooth, own, zeta):
+        z = (zeta + 0.5) * WIDTH
+        there = (z > low) & (z < high) & (side in (0, 1, -1)) & ((own == side) | (side == 0))
+        return np.where(there & (True if teeth is None else tooth < teeth * TEETH), -depth, 0.0)
+
+    return heights
+
+
+def test_both_ends_are_found_to_half_a_row():
+    cells = cells_with(low_between(2.6, 12.1, 0.015, side=-1))
+    (face,) = active_faces(cells)
+    half = 0.5 * cells.grid.row_height
+    assert face.side is Side.RIGHT
+    assert face.low == pytest.approx(2.6, abs=half) and face.high == pytest.approx(12.1, abs=half)
+    assert face.at_both_ends(GEAR)
+
+
+def test_where_one_end_alone_shows_it_the_stretch_goes_on_to_the_other():
+    faces = active_faces(cells_with(low_between(-1.0, 11.0, 0.015)))
+    assert [face.side for face in faces] == [Side.LEFT, Side.RIGHT]
+    for face in faces:
+        assert face.low == 0.0 and face.high == pytest.approx(11.0, abs=0.5)
+        assert not face.at_both_ends(GEAR)
+
+
+@pytest.mark.parametrize(
+    "heights",
+    [
+        pytest.param(lambda tooth, side, zeta: 0.0 * zeta, id="as made"),
+        pytest.param(lambda tooth, side, zeta: -0.012 * (2.0 * zeta) ** 2, id="crowned"),
+        pytest.param(lambda tooth, side, zeta: 0.012 * (2.0 * zeta) ** 2, id="hollow"),
+        pytest.param(lambda tooth, side, zeta: 0.008 * (2.0 * zeta) ** 4 + 0.010 * zeta, id="hollow at the ends, leaning"),
+        pytest.param(lambda tooth, side, zeta: -0.015 * np.clip(10.0 * np.abs(zeta) - 4.0, 0.0, None), id="end relief"),
+        pytest.param(lambda tooth, side, zeta: -0.015 * (np.abs(zeta) > 0.35), id="ends low"),
+        pytest.param(lambda tooth, side, zeta: 0.004 * np.cos(9.0 * zeta + 1.0), id="a wave along the face"),
+        pytest.param(low_between(2.6, 12.1, 0.015, teeth=0.6), id="on two teeth in three"),
+        pytest.param(low_between(0.3, 14.7, 0.015), id="a burr at the ends"),
+    ],
+)
+def test_what_no_narrower_mate_leaves_is_none(heights):
+    assert active_faces(cells_with(heights)) == ()
+
+
+def test_cells_beside_it_are_as_made_and_the_others_are_not():
+    cells = cells_with(low_between(2.6, 12.1, 0.5))
+    for face in active_faces(cells):
+        own = (cells.points.surface == FLANK) & (cells.points.side == int(face.side)) & cells.seen
+        margin = face.margins(cells)
+        assert margin.any() and (own & ~margin).any()
+        assert (cells.points.deviation[margin] > -0.1).all()
+        z = cells.points.position[margin, 2]
+        assert z.min() < 1.0 and z.max() > 14.0
+
+
+def closed(heights, seed):
+    """Loop and wear of a scan with heights put in."""
+    cells = cells_with(heights, scanned(seed))
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False))
+    return loop, find_wear(cells.with_deviation(loop.left), loop.noise, loop.worn_sides, loop, limits=False)
+
+
+def lost(depth, low, high, sides):
+    """Volume of an even loss of `depth` of the flanks of so many sides, mm³: ∫∫ (L − δ) / r_b dδ dL dz."""
+    roll = GEAR.tip_roll**2 - GEAR.form_roll**2
+    layer = depth * roll / (2.0 * GEAR.base_radius) - depth**2 * (GEAR.tip_roll - GEAR.form_roll) / (2.0 * GEAR.base_radius)
+    return sides * TEETH * (high - low) * layer
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("crowning", [0.0, 0.006])
+@pytest.mark.parametrize(("side", "sides"), [(1, 1), (0, 2)])
+def test_an_even_loss_is_told_from_thinner_teeth_beside_the_ledges(side, sides, crowning):
+    """Without what stands at the ends an even loss of all flanks is a thinner tooth, and no scan tells it."""
+    worn = low_between(3.0, 11.5, 0.030, side=side)
+    loop, wear = closed(lambda tooth, own, zeta: worn(tooth, own, zeta) - crowning * (2.0 * zeta) ** 2, 8)
+    assert len(loop.worn_sides) == sides and not loop.others
+    assert not {"tooth_thickness", "profile_shift", "coating"} & {effect.name for effect in loop.effects}
+    assert abs(wear.volume - lost(0.030, 3.0, 11.5, sides)) < 2.0 * wear.volume_std
+    assert wear.volume_std < 0.1 * wear.volume
+
+
+@pytest.mark.long
+def test_beyond_one_end_it_is_known_no_better_than_flanks_are_cut():
+    _, wear = closed(low_between(-1.0, 11.0, 0.030), 9)
+    true = lost(0.030, 0.0, 11.0, 2)
+    assert abs(wear.volume - true) < 2.0 * wear.volume_std
+    assert 0.05 * true < wear.volume_std < 0.5 * true
+
+
+def test_a_side_that_is_known_to_be_unworn_has_none():
+    cells = cells_with(low_between(2.6, 12.1, 0.015, side=1))
+    context = make_context(cells, np.eye(3), False)
+    assert [face.side for face in context.faces] == [Side.LEFT]
+    loop = close_loop(cells, noise(cells), context, worn=frozenset())
+    assert not loop.worn_sides and not loop.context.faces
