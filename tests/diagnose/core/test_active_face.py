@@ -93,10 +93,10 @@ def test_cells_beside_it_are_as_made_and_the_others_are_not():
 
 
 def closed(heights, seed):
-    """Loop and wear of a scan with heights put in."""
+    """Cells, loop and wear of a scan with heights put in."""
     cells = cells_with(heights, scanned(seed))
     loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False))
-    return loop, find_wear(cells.with_deviation(loop.left), loop.noise, loop.worn_sides, loop, limits=False)
+    return cells, loop, find_wear(cells.with_deviation(loop.left), loop.noise, loop.worn_sides, loop, limits=False)
 
 
 def lost(depth, low, high, sides):
@@ -107,21 +107,32 @@ def lost(depth, low, high, sides):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("crowning", [0.0, 0.006])
+@pytest.mark.parametrize("made", [(0.0, 0.0, 0.0), (-0.020, 0.005, -0.007)], ids=["as drawn", "low, leaning and crowned"])
 @pytest.mark.parametrize(("side", "sides"), [(1, 1), (0, 2)])
-def test_an_even_loss_is_told_from_thinner_teeth_beside_the_ledges(side, sides, crowning):
+def test_an_even_loss_is_told_from_thinner_teeth_beside_the_ledges(side, sides, made):
     """Without what stands at the ends an even loss of all flanks is a thinner tooth, and no scan tells it."""
-    worn = low_between(3.0, 11.5, 0.030, side=side)
-    loop, wear = closed(lambda tooth, own, zeta: worn(tooth, own, zeta) - crowning * (2.0 * zeta) ** 2, 8)
+    worn, apart = low_between(3.0, 11.5, 0.030, side=side), np.random.default_rng(2).normal(0.0, (0.004, 0.001), (TEETH, 2, 2))
+
+    def heights(tooth, own, zeta):
+        up = np.where((own == side) | (side == 0), 2.0 * zeta, 0.0)
+        level = np.where((own == side) | (side == 0), made[0], 0.0)
+        each = apart[tooth, np.where(own > 0, 0, 1)]
+        return worn(tooth, own, zeta) + level + made[1] * up + made[2] * up**2 + each[..., 0] + 2.0 * zeta * each[..., 1]
+
+    cells, loop, wear = closed(heights, 8)
     assert len(loop.worn_sides) == sides and not loop.others
     assert not {"tooth_thickness", "profile_shift", "coating"} & {effect.name for effect in loop.effects}
     assert abs(wear.volume - lost(0.030, 3.0, 11.5, sides)) < 2.0 * wear.volume_std
     assert wear.volume_std < 0.1 * wear.volume
+    told = next(level for level in loop.form if level.name == "face_level").parameters["level_um"]
+    off = (np.reshape(told.value, (sides, 3)) - 1e3 * np.array(made)) / np.maximum(np.reshape(told.std, (sides, 3)), 1.0)
+    assert np.abs(off).max() < 3.0
+    assert all(loop.use[face.margins(cells)].mean() > 0.7 for face in loop.context.faces)
 
 
 @pytest.mark.long
 def test_beyond_one_end_it_is_known_no_better_than_flanks_are_cut():
-    _, wear = closed(low_between(-1.0, 11.0, 0.030), 9)
+    *_, wear = closed(low_between(-1.0, 11.0, 0.030), 9)
     true = lost(0.030, 0.0, 11.0, 2)
     assert abs(wear.volume - true) < 2.0 * wear.volume_std
     assert 0.05 * true < wear.volume_std < 0.5 * true
