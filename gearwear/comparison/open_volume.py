@@ -10,7 +10,10 @@ from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
 from gearwear.wear.limits import common_loss, even_depth, even_part
-from gearwear.wear.regions import Wear
+from gearwear.wear.regions import Wear, WearRegion
+
+HOLLOW = 2.0
+"""How deep a hollow is in its mean depth."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +157,29 @@ class OpenVolume:
             return 0.0
         assert self.measured.loop is not None
         return even_depth(self.found.side_maps, side, self.measured.loop.as_made_std, self.measured.cells.grid.toothed)
+
+    @property
+    def evenly(self) -> tuple[float, float]:
+        """What the limits come to below and above the volume evenly over all flanks of one side, mm; 0 where that is no more than its own 95 % interval."""
+        limits, own = self.limits, NORMAL_95 * self.found.volume_std * (1.0 + 1e-9)
+        if limits is None:
+            return 0.0, 0.0
+        down, up = (
+            far / self._side_area if far > own else 0.0 for far in (self.found.volume - limits[0], limits[1] - self.found.volume)
+        )
+        return down, up
+
+    def depth_limits(self, region: WearRegion) -> tuple[float, float] | None:
+        """Within what limits the deepest place of a worn flank lies, mm, its own 95 % interval with them; None where no more is open.
+
+        What its side may have been made like is known (`even_depth`), or is open of the volume: a hollow is up to twice as deep as on average.
+        """
+        (down, up), even = self.evenly, self.even_depth(region.side)
+        below = even if even > 0.0 else HOLLOW * down
+        if below <= 0.0 and up <= 0.0:
+            return None
+        own = NORMAL_95 * region.max_depth_std if math.isfinite(region.max_depth_std) else 0.0
+        return max(region.max_depth - below - own, 0.0), region.max_depth + HOLLOW * up + own
 
     @property
     def _side_area(self) -> float:

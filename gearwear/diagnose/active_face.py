@@ -20,7 +20,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells
-from gearwear.robust import NORMAL_MAD
+from gearwear.robust import scale_about
 
 SMOOTH, SMOOTHER = 4, 10
 """Degree of what a flank has along the face beside a ledge, and up to which heights without one may have it; numerical."""
@@ -70,13 +70,14 @@ def active_faces(cells: Cells) -> tuple[ActiveFace, ...]:
     if grid.rows < FEWEST_ROWS or grid.groove_rows:
         return ()
     heights = _heights(cells)
-    found = []
-    for side in Side:
-        stretch = _stretch(heights[:, side.index])
-        if stretch is not None:
-            low, high = (float(end) * grid.row_height for end in stretch)
-            found.append(ActiveFace(side, low, high))
-    return tuple(found)
+    rows = {side: _Rows.of(heights[:, side.index]) for side in Side}
+    found = {side: stretch for side, one in rows.items() if (stretch := one.stretch()) is not None}
+    for side, one in rows.items():
+        if side not in found and side.opposite in found:  # one mate ran on both
+            known = one.stretch(found[side.opposite])
+            found |= {} if known is None else {side: known}
+    height = grid.row_height
+    return tuple(ActiveFace(side, found[side].low * height, found[side].high * height) for side in Side if side in found)
 
 
 def _heights(cells: Cells) -> Floats:
@@ -91,57 +92,111 @@ def _heights(cells: Cells) -> Floats:
         return np.asarray(rows - np.nanmedian(rows, axis=2, keepdims=True))
 
 
-def _stretch(heights: Floats) -> tuple[float, float] | None:
-    """Between which places, in rows from the lower end, the flanks of a side lie low beside smooth heights, from those of each, (teeth, rows) mm; None
-    where smooth ones explain them as well."""
-    often = np.isfinite(heights).sum(axis=0)
-    seen = np.flatnonzero(often >= max(rules().pattern_teeth, rules().known_flank * often.max(initial=0)))
-    if len(seen) < FEWEST_ROWS:
-        return None
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
-        common = np.nanmedian(heights, axis=0)[seen]
-        scatter = NORMAL_MAD * OF_MEDIAN * np.nanmedian(np.abs(heights[:, seen] - common), axis=0) / np.sqrt(often[seen])
-    weight = 1.0 / np.maximum(scatter, 1e-3 * float(scatter.max()) + 1e-12) ** 2
-    place = 2.0 * (seen + 0.5) / heights.shape[1] - 1.0
-    smooth = legvander(place, min(SMOOTHER, len(seen) - 3))
-    first, last = _ends(seen, heights.shape[1])
-    within = (seen > first[:, None]) & (seen < last[:, None])
-    told = weight * (seen != first[:, None]) * (seen != last[:, None])  # how far a row of a ledge is worn it alone tells
-    fitted, misfit = _fitted(
-        np.concatenate([np.broadcast_to(smooth[:, : SMOOTH + 1], (*within.shape, SMOOTH + 1)), -1.0 * within[..., None]], axis=2),
-        told,
-        common,
-    )
-    misfit[fitted[:, -1] <= 0.0] = math.inf  # a ledge up to the rest is none
-    best = int(np.argmin(misfit))
-    # What neither explains is the unit of both.
-    ledges = int((first[best] >= 0) + (last[best] < heights.shape[1]))
-    unit = max(float(misfit[best]) / max(len(seen) - SMOOTH - 2 - ledges, 1), 1.0)
-    price = rules().parameter_penalty
-    ledged = float(misfit[best]) / unit + price * (SMOOTH + 1.0 + ledges * (1.0 + rules().shape_price))
-    without = min(
-        float(_fitted(smooth[None, :, : degree + 1], weight[None], common)[1][0]) / unit + price * degree
-        for degree in range(1, smooth.shape[1])
-    )
-    if not without - ledged > rules().effect_penalty + rules().close or not _on_most(
-        heights[:, seen], within[best], told[best] > 0.0
-    ):
-        return None
-    # A row in which a ledge lies is worn from there on.
-    worn = np.clip((smooth[:, : SMOOTH + 1] @ fitted[best, :-1] - common) / fitted[best, -1], 0.0, 1.0)
-    share = dict(zip(seen.tolist(), worn.tolist(), strict=True))
-    low = 0.0 if first[best] < 0 else first[best] + 1.0 - share[int(first[best])]
-    high = float(heights.shape[1]) if last[best] >= heights.shape[1] else last[best] + share[int(last[best])]
-    return float(low), float(high)
+@dataclass(frozen=True, slots=True)
+class _Stretch:
+    """Rows in which ledges lie, `first` below and `last` above; and where in them, in rows from the lower end."""
+
+    first: int
+    last: int
+    low: float
+    high: float
 
 
-def _ends(seen: Ints, rows: int) -> tuple[Ints, Ints]:
-    """Rows in which ledges may lie, (k,) each: below and above a stretch; NONE and `rows` where there is none. They leave so much of the face that it shows."""
-    margin = math.ceil(rules().margin_rows)
-    first, last = (each.ravel() for each in np.meshgrid([NONE, *seen[margin:]], [*seen[:-margin], rows], indexing="ij"))
-    some = (last - first > margin) & ((first >= 0) | (last < rows))
-    return first[some], last[some]
+@dataclass(frozen=True, slots=True)
+class _Rows:
+    """The flanks of a side, row by row.
+
+    Parameters
+    ----------
+    heights : (teeth, n) float
+        Of the rows that were seen on most flanks, mm.
+    common, weight : (n,) float
+        Their median, mm, and how well it is known, 1 / mm²: all scatter alike.
+    seen : (n,) int
+        Which rows these are, of so many in all, `count`.
+    """
+
+    heights: Floats
+    common: Floats
+    weight: Floats
+    seen: Ints
+    count: int
+
+    @classmethod
+    def of(cls, heights: Floats) -> _Rows:
+        """From the heights of all rows of each flank, (teeth, rows) mm, nan where not seen."""
+        often = np.isfinite(heights).sum(axis=0)
+        seen = np.flatnonzero(often >= max(rules().pattern_teeth, rules().known_flank * often.max(initial=0)))
+        heights, often, count = heights[:, seen], often[seen], heights.shape[1]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)
+            common = np.nanmedian(heights, axis=0) if len(seen) else np.zeros(0)
+        scatter = max(OF_MEDIAN * scale_about(heights - common), 1e-12)
+        weight = often / scatter**2
+        return cls(heights, common, weight, seen, count)
+
+    def stretch(self, known: _Stretch | None = None) -> _Stretch | None:
+        """Which stretch lies low beside smooth heights, any or a `known` one; None where smooth heights explain the flanks as well."""
+        if len(self.seen) < FEWEST_ROWS:
+            return None
+        ends = self._ends() if known is None else (np.array([known.first]), np.array([known.last]))
+        smooth: Floats = np.asarray(
+            legvander(2.0 * (self.seen + 0.5) / self.count - 1.0, min(SMOOTHER, len(self.seen) // 2 - 1)), np.float64
+        )
+        fits = [self._beside(smooth[:, : degree + 1], *ends) for degree in range(1, SMOOTH + 1)]
+        for fitted, misfit in fits:
+            misfit[fitted[:, -1] <= 0.0] = math.inf  # a ledge up to the rest is none
+        least = int(np.argmin(fits[-1][1]))
+        if not math.isfinite(fits[-1][1][least]):
+            return None
+        # What neither explains is the unit of both.
+        ledges = (ends[0] >= 0).astype(np.float64) + (ends[1] < self.count)
+        unit = max(float(fits[-1][1][least]) / max(len(self.seen) - SMOOTH - 2 - float(ledges[least]), 1.0), 1.0)
+        price, place = rules().parameter_penalty, rules().shape_price if known is None else 0.0
+        costs = np.array(
+            [misfit / unit + price * (degree + 1.0 + ledges * (1.0 + place)) for degree, (_, misfit) in enumerate(fits, 1)]
+        )
+        degree, best = np.unravel_index(int(np.argmin(costs)), costs.shape)
+        plain = (
+            _fitted(smooth[None, :, : n + 1], self.weight[None], self.common)[1][0] / unit + price * n
+            for n in range(1, smooth.shape[1])
+        )
+        sure = rules().close + (rules().effect_penalty if known is None else 0.0)
+        first, last = (int(end[best]) for end in ends)
+        if not min(plain) - costs[degree, best] > sure or not self._on_most(first, last):
+            return None
+        # A row in which a ledge lies is worn from there on.
+        amplitudes = fits[degree][0][best]
+        worn = np.clip((smooth[:, : degree + 2] @ amplitudes[:-1] - self.common) / amplitudes[-1], 0.0, 1.0)
+        low = first + 1.0 - float(worn[self.seen == first].sum()) if first >= 0 else 0.0
+        return _Stretch(first, last, low, last + float(worn[self.seen == last].sum()))
+
+    def _ends(self) -> tuple[Ints, Ints]:
+        """Rows in which ledges may lie, (k,) each: below and above a stretch, NONE and `count` where there is none; beside them so many rows that they show."""
+        margin, seen = rules().margin_rows, self.seen.tolist()
+        first, last = (end.ravel() for end in np.meshgrid([NONE, *seen[margin:]], [*seen[:-margin], self.count], indexing="ij"))
+        some = (last - first > margin) & ((first >= 0) | (last < self.count))
+        return first[some], last[some]
+
+    def _beside(self, smooth: Floats, first: Ints, last: Ints) -> tuple[Floats, Floats]:
+        """`_fitted` of smooth heights and a stretch that lies low; how far a row of a ledge is worn it alone tells."""
+        rows = self.seen
+        within = (rows > first[:, None]) & (rows < last[:, None])
+        told = self.weight * (rows != first[:, None]) * (rows != last[:, None])
+        columns = np.concatenate([np.broadcast_to(smooth, (len(first), *smooth.shape)), -1.0 * within[..., None]], axis=2)
+        return _fitted(columns, told, self.common)
+
+    def _on_most(self, first: int, last: int) -> bool:
+        """Whether a stretch lies low on nearly every flank, at least half as far as on most, beside a line."""
+        within, told = (self.seen > first) & (self.seen < last), (self.seen != first) & (self.seen != last)
+        columns = np.column_stack([np.ones(len(within)), np.linspace(-1.0, 1.0, len(within)), -1.0 * within])
+        lower = []
+        for flank in self.heights:
+            known = np.isfinite(flank) & told
+            if known.mean() > rules().known_flank and np.ptp(columns[known, -1]) > 0.0:
+                lower.append(float(np.linalg.lstsq(columns[known], flank[known])[0][-1]))
+        less = np.array(lower) < 0.5 * np.median(lower) if lower else np.zeros(0)
+        return len(lower) >= rules().pattern_teeth and float(less.mean()) <= rules().blank_flanks
 
 
 def _fitted(columns: Floats, weight: Floats, target: Floats) -> tuple[Floats, Floats]:
@@ -152,15 +207,3 @@ def _fitted(columns: Floats, weight: Floats, target: Floats) -> tuple[Floats, Fl
     moment = weighted.transpose(0, 2, 1) @ target
     amplitudes = np.linalg.solve(gram, moment[..., None])[..., 0]
     return amplitudes, np.asarray((weight * target**2).sum(axis=1) - (amplitudes * moment).sum(axis=1))
-
-
-def _on_most(heights: Floats, within: Bools, told: Bools) -> bool:
-    """Whether a stretch of the rows, (rows,), lies low on nearly every flank, at least half as far as on most, (teeth, rows) mm, beside a line; by the rows that are `told`."""
-    columns = np.column_stack([np.ones(len(within)), np.linspace(-1.0, 1.0, len(within)), -1.0 * within])
-    lower = []
-    for flank in heights:
-        known = np.isfinite(flank) & told
-        if known.mean() > rules().known_flank and np.ptp(columns[known, -1]) > 0.0:
-            lower.append(float(np.linalg.lstsq(columns[known], flank[known])[0][-1]))
-    less = np.array(lower) < 0.5 * np.median(lower) if lower else np.zeros(0)
-    return len(lower) >= rules().pattern_teeth and float(less.mean()) <= rules().blank_flanks

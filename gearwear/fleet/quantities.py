@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from gearwear.design.side import Side
-from gearwear.fleet.line import beyond
 
 Json = Mapping[str, Any]
 
@@ -97,7 +96,7 @@ def _wear(report: Json) -> Iterator[Quantity]:
     if regions:
         yield from _estimate(f"wear_{size}", GEAR, wear.get(size))
         deepest = max(regions, key=lambda region: _number(region["max_depth_um"]))
-        yield _depth(deepest, GEAR, open_)
+        yield _depth(deepest, GEAR)
     elif size in wear:  # nothing was found: what might be there all the same
         hidden = depth * patch if unit == "mm3" else math.nan
         yield Quantity(
@@ -108,7 +107,7 @@ def _wear(report: Json) -> Iterator[Quantity]:
     seen = {(region["tooth"], region["flank"]) for region in regions}
     for region in regions:
         yield from _estimate(f"wear_{size}", TOOTH, region.get(size), tooth=int(region["tooth"]), flank=str(region["flank"]))
-        yield _depth(region, TOOTH, open_)
+        yield _depth(region, TOOTH)
     for flank in wear.get("flanks") or []:
         if (flank["tooth"], flank["flank"]) not in seen:
             high = max(HIDDEN * 1e-3 * _number(flank.get("detection_limit_um")), HIDDEN * open_[1])
@@ -124,22 +123,10 @@ def _wear(report: Json) -> Iterator[Quantity]:
 
 
 def _even_open(report: Json) -> tuple[float, float]:
-    """What the range of the worn volume (of a section the area) comes to below and above it, mm along the normal, evenly over all flanks of one
-    side; 0 where it is no wider than the ±.
-
-    The flank of an involute is ``(L_tip² − L_form²) / (2 r_b)`` long, with ``L² = r² − r_b²``, and lies at the helix angle of the base circle.
-    """
-    wear, design = report.get("wear") or {}, report.get("design") or {}
-    planar = "volume_mm3" not in wear
-    total: Json = wear.get("area_mm2" if planar else "volume_mm3") or {}
-    tip, form, base, face, angle, teeth = (
-        _number(design.get(name))
-        for name in ("tip_radius_mm", "form_radius_mm", "base_radius_mm", "face_width_mm", "base_helix_angle_deg", "teeth")
-    )
-    side = teeth * abs(tip**2 - form**2) / (2.0 * base) * (1.0 if planar else face / math.cos(math.radians(angle)))
-    value, std, low, high = (_number(total.get(key)) for key in ("value", "std", "low", "high"))
-    down, up = (far / side if side > 0.0 else 0.0 for far in beyond(value, std, low, high))
-    return down, up
+    """What the range of the worn volume comes to below and above it evenly over all flanks of one side, mm; 0 where it is no wider than the ±."""
+    evenly: Json = (report.get("wear") or {}).get("evenly_um") or {}
+    below, above = (float(np.nan_to_num(1e-3 * _number(evenly.get(end)))) for end in ("below", "above"))
+    return below, above
 
 
 def _ends(value: float, down: float, up: float) -> tuple[float, float]:
@@ -147,20 +134,12 @@ def _ends(value: float, down: float, up: float) -> tuple[float, float]:
     return value - down if down > 0.0 else math.nan, value + up if up > 0.0 else math.nan
 
 
-def _depth(region: Json, scope: str, open_: tuple[float, float]) -> Quantity:
-    """The deepest place of a flank, and what it may be where its side may be made so: up to twice what the range is evenly."""
-    depth = 1e-3 * _number(region["max_depth_um"])
-    low, high = _ends(depth, *(HIDDEN * far for far in open_))
-    less_even = 1e-3 * _number(region.get("max_depth_less_even_um"))
+def _depth(region: Json, scope: str) -> Quantity:
+    """The deepest place of a flank, and within what limits it lies."""
+    value, std, low, high = (1e-3 * _number(region.get(f"max_depth_{key}um")) for key in ("", "std_", "low_", "high_"))
+    flank = str(region["flank"]) if scope == TOOTH else ""
     return Quantity(
-        name="wear_depth_mm",
-        scope=scope,
-        value=depth,
-        std=1e-3 * _number(region.get("max_depth_std_um")),
-        tooth=int(region["tooth"]),
-        flank=str(region["flank"]) if scope == TOOTH else "",
-        low=float(np.maximum(np.fmin(low, less_even), 0.0)),
-        high=high,
+        name="wear_depth_mm", scope=scope, value=value, std=std, tooth=int(region["tooth"]), flank=flank, low=low, high=high
     )
 
 

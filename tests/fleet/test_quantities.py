@@ -60,54 +60,35 @@ def test_a_range_of_the_report_is_kept():
 def test_a_depth_that_may_be_thinner_teeth_has_a_lower_end():
     given = report(depth=(60.0, 2.0))
     assert math.isnan(rows(given)["wear_depth_mm"].low)
-    given["wear"]["regions"][0]["max_depth_less_even_um"] = 15.0
+    given["wear"]["regions"][0] |= {"max_depth_low_um": 15.0, "max_depth_high_um": 64.0}
     for scope, key in ((GEAR, "wear_depth_mm"), (TOOTH, ("wear_depth_mm", 3, "left"))):
         depth = rows(given, scope)[key]
-        assert (depth.value, depth.low) == (pytest.approx(0.06), pytest.approx(0.015)) and math.isnan(depth.high)
+        assert (depth.value, depth.low, depth.high) == (pytest.approx(0.06), pytest.approx(0.015), pytest.approx(0.064))
 
 
-SPUR = {
-    "teeth": 20, "face_width_mm": 10.0, "base_helix_angle_deg": 0.0, "base_radius_mm": 18.0, "form_radius_mm": math.hypot(18.0, 3.0),
-    "tip_radius_mm": math.hypot(18.0, 9.0), "reference_radius_mm": 20.0,
-}  # fmt: skip
-"""Flanks from 3 to 9 mm of roll length: (9² − 3²) / (2 · 18) = 2 mm long, 400 mm² on a side."""
-
-
-def open_report(value, std, low, high, **more):
-    """A volume with its range on a gear whose flanks are 400 mm² a side."""
-    given = report(volume=(value, std), **more)
-    given["design"] |= SPUR
-    given["wear"]["volume_mm3"] |= {"low": low, "high": high}
+def open_report(below, above, **more):
+    """A volume whose range comes to so much evenly over one side, µm."""
+    given = report(**more)
+    given["design"] |= {"base_radius_mm": 18.0, "reference_radius_mm": 20.0}
+    given["wear"]["evenly_um"] = {"below": below, "above": above}
     return given
 
 
-def test_what_is_open_of_the_volume_is_open_of_depth_and_thickness():
-    """20 mm³ over 400 mm² are 50 µm: twice that at the deepest place, and 20/18 of it as arc at the reference circle."""
-    found = rows(open_report(30.0, 0.5, 22.0, 50.0, depth=(90.0, 2.0), loss=(0.07, 0.004)))
-    depth, loss = found["wear_depth_mm"], found["thickness_loss_mm"]
-    assert (depth.low, depth.high) == (pytest.approx(0.09 - 2 * 0.02), pytest.approx(0.09 + 2 * 0.05))
+def test_what_is_open_of_the_volume_is_open_of_the_thickness():
+    """50 µm along the normal are 20/18 of it as arc at the reference circle."""
+    loss = rows(open_report(20.0, 50.0, loss=(0.07, 0.004)))["thickness_loss_mm"]
     assert (loss.low, loss.high) == (pytest.approx(0.07 - 0.02 / 0.9), pytest.approx(0.07 + 0.05 / 0.9))
-    narrow = rows(open_report(30.0, 0.5, 30.0 - 0.98, 30.0 + 0.98))
-    assert all(
-        math.isnan(end) for name in ("wear_depth_mm", "thickness_loss_mm") for end in (narrow[name].low, narrow[name].high)
-    )
-
-
-def test_a_helix_is_longer_than_its_face_and_a_section_has_none():
-    given = open_report(0.0, 0.5, 0.0, 50.0)
-    given["design"]["base_helix_angle_deg"] = 60.0
-    assert rows(given)["thickness_loss_mm"].high == pytest.approx(0.05 + 50.0 / 800.0 / 0.9)
-    given["wear"]["area_mm2"] = given["wear"].pop("volume_mm3") | {"high": 2.0}  # of 40 mm of flanks
-    assert rows(given)["thickness_loss_mm"].high == pytest.approx(0.05 + 2.0 / 40.0 / 0.9)
+    narrow = rows(open_report(0.0, 0.0))["thickness_loss_mm"]
+    assert math.isnan(narrow.low) and math.isnan(narrow.high)
 
 
 def test_none_seen_is_as_deep_as_the_volume_leaves_open():
     """A gear worn by 38 µm of which the report said that it may be 160 mm³ conformed to 20 µm: none seen, below 14."""
-    given = open_report(0.0, 0.0, 0.0, 40.0)
+    given = open_report(0.0, 100.0)
     given["wear"] |= {"regions": [], "flanks": [{"tooth": 2, "flank": "left", "detection_limit_um": 7.0}]}
     assert rows(given)["wear_depth_mm"].high == pytest.approx(2 * 0.1)
     assert rows(given, TOOTH)["wear_depth_mm", 2, "left"].high == pytest.approx(2 * 0.1)
-    given["wear"]["volume_mm3"]["high"] = 0.4
+    given["wear"]["evenly_um"]["above"] = 1.0
     assert rows(given)["wear_depth_mm"].high == pytest.approx(2 * 0.02)  # its own limit
 
 

@@ -18,7 +18,7 @@ from gearwear.commands import progress
 from gearwear.design.side import Side
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report.words.terminal import ASCII, lines, print_summary
-from gearwear.report.words.verdict import subject, verdict
+from gearwear.report.words.verdict import key_figures, subject, verdict
 from gearwear.wear.breakage import Broken
 from tests.report.fake import bare_results, changed, fake_results, real_results
 
@@ -96,14 +96,23 @@ def test_limits_of_the_volume_hold_its_own_95_percent():
     assert results.volume_range[1] == pytest.approx(
         results.wear.volume + 1.96 * results.wear.volume_std, rel=1e-4
     )  # as the words have it
-    assert "it may be 1.8 to 92\u202fmm³" in verdict(results)
+    # So wide a range comes first: 90.8 ± 0.51 mm³ would be read as how well it is known.
+    said = verdict(results).replace("\u202f", " ").replace("\u00a0", " ")
+    assert said.startswith("1.8 to 92 mm³ of metal is gone") and "the likeliest is 90.80 ± 0.51 mm³" in said
+    assert key_figures(results)[0].value.replace("\u202f", " ") == "1.8 to 92 mm³"
+
+
+def test_a_range_hardly_wider_than_the_deviation_says_comes_after_it():
+    results = changed(fake_results(), "wear.undecided", ((89.8, 0.5),))
+    said = verdict(results).replace("\u202f", " ").replace("\u00a0", " ")
+    assert said.startswith("90.80 ± 0.51 mm³ of metal is gone") and "it may be 89 to 92 mm³" in said
 
 
 def test_without_a_region_the_limits_stand_beside_the_nought():
     results = changed(fake_results(), "wear.found.regions", ())
     results = changed(results, "wear.undecided", ((110.0, 5.0),))
     row = next(line for line, _ in lines(results, 80) if "Metal lost" in line).replace("\u00a0", " ")
-    assert "120 mm³ not excluded" in row
+    assert "0 to 120 mm³" in row and "not excluded" in row
 
 
 def test_the_module_is_that_of_the_drawing():

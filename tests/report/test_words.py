@@ -334,10 +334,8 @@ def test_the_thinnest_tooth_is_an_interval_where_that_reaches_far_down(low, told
     assert thinnest_words(ThinnestTooth(1, 9.66111, 0.00402, low, 9.669, 3.2, 9.975)).replace(SPACE, " ") == told
 
 
-@pytest.mark.parametrize(("even", "told"), [(0.0, ""), (0.053, "116 to 259 µm"), (0.2, "0 to 259 µm")])
-def test_the_deepest_place_is_an_interval_where_an_even_loss_may_be_thin_teeth(even, told):
-    """214 ± 23 µm: less 53 and 1.96 times 23, and more by that."""
+@pytest.mark.parametrize(("limits", "told"), [(None, ""), ((0.1159, 0.2591), "116 to 259 µm"), ((0.0, 0.259), "0 to 259 µm")])
+def test_the_deepest_place_is_an_interval_where_more_than_its_deviation_is_open(limits, told):
     (region,) = fake_regions()[:1]
-    region = replace(region, max_depth=0.214, max_depth_std=0.023)
-    results = SimpleNamespace(open_volume=SimpleNamespace(even_depth=lambda side: even if side == region.side else 0.0))
+    results = SimpleNamespace(open_volume=SimpleNamespace(depth_limits=lambda one: limits if one is region else None))
     assert deepest_range(results, region).replace(SPACE, " ") == told

@@ -11,6 +11,7 @@ import numpy as np
 
 import gearwear
 from gearwear.comparison.consequences import Change
+from gearwear.comparison.open_volume import OpenVolume
 from gearwear.comparison.results import PairResult, Results
 from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.gear import Gear
@@ -212,9 +213,10 @@ def _root(root: Root) -> Json:
     }
 
 
-def _less_even(region: WearRegion, even: float) -> Json:
-    """The deepest place without an even loss of its side, where that may be thinner teeth."""
-    return {"max_depth_less_even_um": 1e3 * max(region.max_depth - even, 0.0)} if even > 0.0 else {}
+def _depth_limits(open_: OpenVolume, region: WearRegion) -> Json:
+    """Within what limits the deepest place lies, where more than its standard deviation is open."""
+    limits = open_.depth_limits(region)
+    return {} if limits is None else {"max_depth_low_um": 1e3 * limits[0], "max_depth_high_um": 1e3 * limits[1]}
 
 
 def _tip_edge(edge: TipEdge) -> Json:
@@ -327,7 +329,8 @@ def _unexplained(loop: Loop, results: Results) -> Json:
 
 def _wear(results: Results) -> Json:
     wear, planar, unlooped = results.wear.found, results.planar, results.wear.before_loop
-    even = {side: results.open_volume.even_depth(side) for side in Side}
+    open_ = results.open_volume
+    below, above = open_.evenly
     size = "area_mm2" if planar else "volume_mm3"
     before = {size: _total(unlooped), "regions": len(unlooped.regions)}
     report: Json = {
@@ -343,7 +346,7 @@ def _wear(results: Results) -> Json:
                 size: value_std(region.volume, region.volume_std),
                 "max_depth_um": 1e3 * region.max_depth,
                 "max_depth_std_um": 1e3 * region.max_depth_std,
-                **_less_even(region, even[region.side]),
+                **_depth_limits(open_, region),
                 "mean_depth_um": 1e3 * region.mean_depth,
                 **({} if planar else {"area_mm2": region.area}),
                 "centroid_mm": region.centroid.tolist(),
@@ -351,6 +354,7 @@ def _wear(results: Results) -> Json:
             }
             for region in wear.regions
         ],
+        "evenly_um": {"below": 1e3 * below, "above": 1e3 * above},
         "burrs": [{"flanks": str(burr.side), "volume_mm3": value_std(burr.volume, burr.std)} for burr in wear.burrs],
         "active_face": [
             {"flanks": str(face.side), "low_mm": face.low, "high_mm": face.high}

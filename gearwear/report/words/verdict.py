@@ -142,17 +142,20 @@ def _open(results: Results) -> bool:
 
 
 def _may_be(results: Results) -> str:
-    """What the volume may be as well, where the scan does not decide which sides are worn throughout."""
-    if results.open_volume.layered > 0.0:
-        return f"how much of that is views that lie apart the scan does not decide: it may be {_limits(results)}"
+    """What the scan does not decide of the volume, and what it may be as well; where that leads, what it likeliest is."""
     question = "whether flanks are worn throughout or were made so"
-    if not results.wear.undecided and results.open_volume.form_or_wear <= 0.0:
+    if results.open_volume.layered > 0.0:
+        question = "how much of that is views that lie apart"
+    elif not results.wear.undecided and results.open_volume.form_or_wear <= 0.0:
         question = "whether the teeth were cut thinner than drawn or are worn evenly"
         if results.open_volume.unsure_or_worn > 0.0:
             question = "how much the flanks that look worn have lost"
         elif any(results.open_volume.ridge_or_thick):
             question = "how high the worn flanks stood as they were made"
-    return f"{question} the scan does not decide: it may be {_limits(results)}"
+    told = f"it may be {_limits(results)}"
+    if results.wear.regions and _wide(results):
+        told = f"the likeliest is {_with_own_std(results)}"
+    return f"{question} the scan does not decide: {told}"
 
 
 def _limits(results: Results) -> str:
@@ -163,8 +166,22 @@ def _limits(results: Results) -> str:
 
 
 def _lost(results: Results) -> str:
-    unit, of_what = ("mm²", "of the section") if results.planar else ("mm³", "of metal")
-    return f"{with_std(results.wear.volume, results.wear.volume_std, unit)} {of_what}"
+    return f"{_size(results)} {'of the section' if results.planar else 'of metal'}"
+
+
+def _size(results: Results) -> str:
+    """The volume with its standard deviation; between what it lies, where that is much more than its own 95 %."""
+    return _limits(results) if _wide(results) else _with_own_std(results)
+
+
+def _with_own_std(results: Results) -> str:
+    return with_std(results.wear.volume, results.wear.volume_std, "mm²" if results.planar else "mm³")
+
+
+def _wide(results: Results) -> bool:
+    """Whether what is open of the volume is so much more than its standard deviation that this would be read as how well it is known."""
+    limits = results.volume_range
+    return limits is not None and _open(results) and limits[1] - limits[0] > 2.0 * LOPSIDED * NORMAL_95 * results.wear.volume_std
 
 
 def _no_wear(results: Results) -> str:
@@ -189,13 +206,9 @@ def depth_words(region: WearRegion, unit: str = "µm") -> str:
 
 
 def deepest_range(results: Results, worst: WearRegion) -> str:
-    """Between what the deepest place lies where an even loss of its side may be thinner teeth, its own 95 % with it; "" where it may not."""
-    even = results.open_volume.even_depth(worst.side)
-    if even <= 0.0:
-        return ""
-    own = NORMAL_95 * worst.max_depth_std
-    ends = (max(worst.max_depth - even - own, 0.0), worst.max_depth + own)
-    return f"{number(1e3 * ends[0], 0)} to {number(1e3 * ends[1], 0)}{SPACE}µm"
+    """Between what the deepest place lies where more than its standard deviation is open, its own 95 % with it; "" where it is not."""
+    limits = results.open_volume.depth_limits(worst)
+    return "" if limits is None else f"{number(1e3 * limits[0], 0)} to {number(1e3 * limits[1], 0)}{SPACE}µm"
 
 
 def _depth(depth: float) -> str:
@@ -374,13 +387,8 @@ def _um(value: float) -> str:
 def key_figures(results: Results) -> list[KeyFigure]:
     """The figures that come first."""
     wear, loop, planar = results.wear, results.loop, results.planar
-    size = with_std(wear.volume, wear.volume_std, "mm²" if planar else "mm³")
-    flanks = f"from {which_flanks(wear.regions, results.gear.teeth)}" if wear.regions else "no region stands out"
-    if _open(results):  # without a region the value is 0, and the limits say more than that
-        open_ = f"{_limits(results)} {'are ' if wear.regions else ''}not excluded"
-        flanks = f"{flanks}; {open_}" if wear.regions else f"{open_}; {flanks}"
-    elif wear.regions and (too_faint := _too_faint(results)):
-        flanks = f"{flanks}; {too_faint}"
+    size = _size(results)
+    flanks = _where_lost(results)
     if results.pieces:
         flanks += "; without what is broken off"
     key = [
@@ -410,6 +418,17 @@ def key_figures(results: Results) -> list[KeyFigure]:
     else:
         key.append(KeyFigure(name, f"{_um(loop.rms_after)}{SPACE}µm", f"no effect is named; {own_noise}"))
     return key
+
+
+def _where_lost(results: Results) -> str:
+    """From which flanks, and what else the volume may be."""
+    open_, regions = _open(results), results.wear.regions
+    if not regions:
+        return "not excluded; no region stands out" if open_ else "no region stands out"
+    beside = f"likeliest {_with_own_std(results)}" if _wide(results) else _too_faint(results)
+    if open_ and not _wide(results):
+        beside = f"{_limits(results)} are not excluded"
+    return "; ".join(filter(None, (f"from {which_flanks(regions, results.gear.teeth)}", beside)))
 
 
 def _contact_figures(results: Results) -> list[KeyFigure]:
