@@ -54,7 +54,7 @@ MUTATIONS = [
         ("brep/ends.py", "END_TOLERANCE = 2e-8", "END_TOLERANCE = 2e-3", "brep/test_ends.py"),
         # a mate narrower than the face
         ("diagnose/active_face.py", "misfit[fitted[:, -1] <= 0.0] = math.inf", "pass", "diagnose/core/test_active_face.py"),
-        ("diagnose/active_face.py", "rules().effect_penalty + rules().close", "-100.0", "diagnose/core/test_active_face.py"),
+        ("diagnose/active_face.py", "> sure or not", "> -100.0 or not", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "<= rules().blank_flanks", "<= 1.0", "diagnose/core/test_active_face.py"),
         ("diagnose/loop.py", "worn &= ~face.margins(fit.cells)", "pass", "diagnose/core/test_active_face.py"),
         ("diagnose/loop.py", "always |= {FACE_LEVEL}", "pass", "diagnose/core/test_active_face.py"),
@@ -107,7 +107,8 @@ MUTATIONS = [
         ("fleet/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),
         ("fleet/conformity.py", "if most <= limit", "if least <= limit", "fleet/test_conformity.py"),
         ("fleet/quantities.py", "HIDDEN = 2.0", "HIDDEN = 1.0", "fleet/test_quantities.py"),
-        ("fleet/quantities.py", "abs(tip**2 - form**2) / (2.0 * base)", "abs(tip - form)", "fleet/test_quantities.py"),
+        ("comparison/open_volume.py", "HOLLOW = 2.0", "HOLLOW = 1.0", "comparison/test_open_volume.py"),
+        ("comparison/open_volume.py", "if far > own else 0.0", "if far > -1.0 else 0.0", "comparison/test_open_volume.py"),
         ("fleet/line.py", "scatter = math.sqrt(square / degrees) * arm if bends else std", "scatter = std", "fleet/test_line.py"),
         ("fleet/line.py", "0.0 if above >= limit else _crossing", "_crossing", "fleet/test_line.py"),
         ("fleet/line.py", "if not far_slope > 0.0 or not", "if not", "fleet/test_line.py"),

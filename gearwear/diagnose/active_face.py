@@ -113,7 +113,9 @@ class _Rows:
     common, weight : (n,) float
         Their median, mm, and how well it is known, 1 / mm²: all scatter alike.
     seen : (n,) int
-        Which rows these are, of so many in all, `count`.
+        Which rows these are.
+    count : int
+        Rows in all.
     """
 
     heights: Floats
