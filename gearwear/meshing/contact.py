@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
@@ -142,7 +143,7 @@ def mesh_contact(
 
     nominal, lean = -0.5 * transverse_backlash(gear, mate, centre_distance), gear.base_helix_cosine
     asked = [(got.ahead, -1, False), (got.ahead + got.behind, 1, True), (got.ahead + got.behind, -1, True), (got.ahead, 1, False)]
-    least, tightest, loosest, most = each([partial(_extreme, run, *case) for case in asked])
+    least, tightest, loosest, most = _extremes(run, asked)
     peak, peak_rotation = _at(run, others, (least, most, tightest, loosest))
     return ContactResult(
         rotation=np.arange(passes * n) / n * gear.pitch_angle,
@@ -199,25 +200,35 @@ def _at(run: Passes, others: Sequence[Passes], extremes: Sequence[Extreme]) -> t
     return Positions.joined(blocks), rotation
 
 
-def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:
-    """Least (sign −1) or greatest (+1) value between positions, mm, and the rotation, rad.
+def _extremes(run: Passes, asked: Sequence[tuple[Floats, int, bool]]) -> list[Extreme]:
+    """Least (sign −1) or greatest (+1) values between positions, mm, and the rotations, rad.
 
     Extremes are cusps, where one pair hands over to the next; so they are searched for, by halving the two steps round a place. Looked at are
-    the greatest sample and the cusps that may be higher, the highest first. `values` is the advance, or with `both` the sum of advance and lag.
+    the greatest sample and the cusps that may be higher, the highest first. Asked are values, their sign, and whether they are the advance
+    (False) or the sum of advance and lag (True). The searches go side by side: one by one they would be many calls for few numbers.
     """
-    signed, pitch = sign * values, run.driver.gear.pitch_angle
-    at = int(signed.argmax())
-    best, where = float(signed[at]), float(at)
-    high, start = _cusps(signed)
-    places = [(high[i], start[i]) for i in np.argsort(-high)[:_MAX_CLIMBS]]
-    if np.abs(signed[[at - 1, (at + 1) % len(signed)]] - best).max() > _LEAST_RISE:
+    highest = [(float((sign * values).max()), float((sign * values).argmax())) for values, sign, _ in asked]
+    places = [_places(sign * values) for values, sign, _ in asked]
+    size = run.searches_at_a_time()
+    for number in range(1 + _MAX_CLIMBS):
+        open_ = [i for i, p in enumerate(places) if number < len(p) and p[number][0] > highest[i][0] + _LEAST_RISE]
+        climbs = [(places[i][number][1], *asked[i][1:]) for i in open_]
+        found = each([partial(_climb, run, climbs[i : i + size]) for i in range(0, len(climbs), size)])
+        for i, reached in zip(open_, chain.from_iterable(found), strict=True):
+            if reached[0] > highest[i][0]:
+                highest[i] = reached
+    pitch = run.driver.gear.pitch_angle
+    return [Extreme(sign * best, where / run.n * pitch) for (best, where), (_, sign, _) in zip(highest, asked, strict=True)]
+
+
+def _places(values: Floats) -> list[tuple[float, float]]:
+    """Where the highest value is looked for: how high it may be there, and the place, in positions."""
+    high, start = _cusps(values)
+    places = [(float(high[i]), float(start[i])) for i in np.argsort(-high)[:_MAX_CLIMBS]]
+    at = int(values.argmax())
+    if np.abs(values[[at - 1, (at + 1) % len(values)]] - values[at]).max() > _LEAST_RISE:
         places.insert(0, (np.inf, float(at)))
-    for promised, place in places:
-        if promised > best + _LEAST_RISE:
-            height, there = _climb(run, place, sign, both)
-            if height > best:
-                best, where = height, there
-    return Extreme(sign * best, where / run.n * pitch)
+    return places
 
 
 def _cusps(values: Floats) -> tuple[Floats, Floats]:
@@ -229,24 +240,28 @@ def _cusps(values: Floats) -> tuple[Floats, Floats]:
     return np.where(rises, values + up * share, -np.inf), np.arange(len(values)) + share
 
 
-def _climb(run: Passes, start: float, sign: int, both: bool) -> tuple[float, float]:
-    """Highest value (times `sign`) about a place, both in positions from the start of the cycle."""
-    passing = int(start) // run.n
-    advances = [run.advance_near(passing, side) for side in ((run.side, run.side.opposite) if both else (run.side,))]
-    place = start / run.n - passing
+def _climb(run: Passes, climbs: Sequence[tuple[float, int, bool]]) -> list[tuple[float, float]]:
+    """Highest values (times the sign) about places, and where; places in positions from the start of the cycle."""
+    start, sign = (np.array([climb[i] for climb in climbs]) for i in range(2))
+    passing = start.astype(np.int64) // run.n
+    sides = [(run.side, run.side.opposite) if both else (run.side,) for _, _, both in climbs]
+    of = np.repeat(np.arange(len(climbs)), [len(one) for one in sides])
+    advances = run.advances_near(passing[of], [side for one in sides for side in one])
+    first = np.flatnonzero(np.diff(of, prepend=-1))
 
-    def value(at: Floats) -> Floats:
-        return sign * np.asarray(np.sum([advance(at) for advance in advances], axis=0), dtype=np.float64)
+    def values(at: Floats) -> Floats:
+        return sign * np.add.reduceat(advances(at[:, of]), first, axis=1)
 
-    best, step = float(value(np.array([place]))[0]), 0.5 / run.n
+    place, step = start / run.n - passing, 0.5 / run.n
+    best = values(place[None])[0]
     for _ in range(_HALVINGS):
-        tried = place + step * np.array([-1.0, 1.0])
-        heights = value(tried)
-        highest = int(heights.argmax())
-        if heights[highest] > best:
-            place, best = float(tried[highest]), float(heights[highest])
+        tried = place + step * np.array([[-1.0], [1.0]])
+        heights = values(tried)
+        highest = heights.argmax(axis=0)[None]
+        height, there = (np.take_along_axis(one, highest, axis=0)[0] for one in (heights, tried))
+        place, best = np.where(height > best, there, place), np.maximum(height, best)
         step *= 0.5
-    return best, (passing + place) * run.n
+    return list(zip(best.tolist(), ((passing + place) * run.n).tolist(), strict=True))
 
 
 def _contact_ratio(advance: Floats, n: int, tolerance: float) -> float:

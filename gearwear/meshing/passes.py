@@ -174,21 +174,29 @@ class Passes:
         ahead = side * self.phase if self.phase.any() else None
         return ToothPairs.of(*self.flanks(side, tooth), self.centre, ahead).contact(angles)
 
-    def advance_near(self, passing: int, side: Side) -> Callable[[Floats], Floats]:
-        """Advance (mm) through one side as a function of the place in or next to a pass, in pitches."""
+    def searches_at_a_time(self) -> int:
+        """Places about which both sides' tables fit in the memory set aside."""
+        row = 8.0 * (2 * (SAMPLES + len(self.driver.radius)) + NODES)
+        return max(1, int(_BLOCK_BYTES / (2 * row * len(self.columns()) * len(self.driver.z))))
+
+    def advances_near(self, passing: Ints, sides: Sequence[Side]) -> Callable[[Floats], Floats]:
+        """Advances (mm) in or next to passes (k,), through a side in each, as a function of the places in them, (n, k) pitches."""
         gear, columns = self.driver.gear, self.columns()
-        turn = (1 if side == self.side else -1) * gear.pitch_angle
-        driving, mate = self.flanks(side, self.tooth(np.array(passing), columns))
-        # The angles of columns and slices go into the half angles, so that one angle serves them all.
-        ahead = np.repeat(turn * columns, len(self.driver.z)) + np.tile(side * self.phase, len(columns))
-        pairs = ToothPairs.of(replace(driving, excess=driving.excess + ahead[:, None]), mate, self.centre, parts=len(columns))
+        turn = np.array([1 if side == self.side else -1 for side in sides]) * gear.pitch_angle
+        flanks = [self.flanks(side, self.tooth(at, columns)) for at, side in zip(passing, sides, strict=True)]
+        driving, mate = (replace(f[0], excess=np.concatenate([one.excess for one in f])) for f in zip(*flanks, strict=True))
+        # The angles of columns and slices go into the half angles, so that one angle serves all of a pass.
+        ahead = np.repeat(np.outer(turn, columns), len(self.driver.z))
+        ahead += np.concatenate([np.tile(side * self.phase, len(columns)) for side in sides])
+        driving = replace(driving, excess=driving.excess + ahead[:, None])
+        pairs = ToothPairs.of(driving, mate, self.centre, parts=len(sides) * len(columns))
 
-        def advance(place: Floats) -> Floats:
-            each = pairs.contact(turn * place).advance - gear.base_radius * ahead
-            mean: Floats = self.furthest(each.reshape(len(place), len(columns), -1)).mean(axis=0)
-            return mean
+        def advances(places: Floats) -> Floats:
+            each = pairs.contact(np.repeat(turn * places, len(columns), axis=1)).advance - gear.base_radius * ahead
+            mean: Floats = self.furthest(each.reshape(places.size, len(columns), -1)).mean(axis=0)
+            return mean.reshape(places.shape)
 
-        return advance
+        return advances
 
     def furthest(self, advance: Floats) -> Floats:
         """Greatest advance of each half, (halves, positions), of advances (positions, columns, slices), mm."""

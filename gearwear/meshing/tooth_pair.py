@@ -169,9 +169,9 @@ class ToothPairs:
 
         Parameters
         ----------
-        angles : (n_a,) float
+        angles : (n_a,) or (n_a, parts) float
             Angle in rad from the line of centres to the driver tooth's centre line, in the sense in which the
-            flank faces; `ahead` is added.
+            flank faces, of all rows or of each part of them; `ahead` is added.
 
         Returns
         -------
@@ -186,18 +186,19 @@ class ToothPairs:
         contact. Where two places of one flank are within h²/(8 R) of touching together (h the sample distance, R the
         relative radius of curvature; 0.1 µm for a module of 6 mm), the lesser may be found.
         """
-        count, rows, groups = len(angles), len(self.x), len(self.ahead)
+        count, rows, groups, parts = len(angles), len(self.x), len(self.ahead), len(self.span[0])
+        standing = np.broadcast_to(angles.reshape(count, -1, 1) + self.ahead, (count, parts, groups))
         best = np.full((count, rows), -1, np.intp)
         entry = np.full((count, rows), -1, np.intp)
         advance = np.full((count, rows), -np.inf)
         radius, mate_radius = np.full((2, count, rows), np.nan)
 
         def look(at: int) -> None:
-            self._look(angles[at] + self.ahead, best[at], entry[at])
+            self._look(standing[at], best[at], entry[at])
 
         def search(chunk: Index) -> None:
             row = chunk % rows
-            angle = angles[chunk // rows] + self.ahead[row % groups]
+            angle = standing[chunk // rows, row // (rows // parts), row % groups]
             value, r, rho = self._halve(row, angle, best.ravel()[chunk])
             enters = np.flatnonzero(entry.ravel()[chunk] > 0)
             if len(enters):
@@ -218,15 +219,15 @@ class ToothPairs:
     def _look(self, angles: Floats, best: Index, entry: Index) -> None:
         """Number of the best sample, and of the first one inside the driven tip circle, for all rows, (rows,); −1 is none.
 
-        The driver's tooth of row i stands at angle i modulo g of `angles` (g,), rad.
+        The driver's tooth of row i stands at angle i modulo g of its part of `angles` (parts, g), rad.
         """
         # Below this cosine a point at radius r lies outside the driven tip circle, or inside that of a ring.
         centre = self.centre  # signed
         least_cosine = (centre**2 + self.radius**2 - self.tip**2) / (2.0 * centre * self.radius)
-        nearest = np.clip(0.0, angles[:, None] + self.span[0][:, None], angles[:, None] + self.span[1][:, None])
+        nearest = np.clip(0.0, angles[..., None] + self.span[0][:, None], angles[..., None] + self.span[1][:, None])
         inside = ((np.cos(nearest) >= least_cosine) & (np.abs(nearest) < 0.5 * np.pi)).any(axis=1)
-        cos, sin = (of(angles)[np.arange(len(best)) % len(angles), None] for of in (np.cos, np.sin))
-        size = len(best) // len(inside)
+        size, row = len(best) // len(inside), np.arange(len(best))
+        cos, sin = (of(angles)[row // size, row % angles.shape[1], None] for of in (np.cos, np.sin))
         for number, samples in enumerate(inside):
             within = np.flatnonzero(samples)
             if not len(within):

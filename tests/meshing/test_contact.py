@@ -283,6 +283,8 @@ def test_blocks_of_passes_do_not_show(own, mate, monkeypatch):
     np.testing.assert_array_equal(pieces.transmission_error, whole.transmission_error)
     np.testing.assert_array_equal(pieces.driver_pattern.count, whole.driver_pattern.count)
     assert pieces.contact_ratio == whole.contact_ratio
+    for name in ("transmission_error_min", "transmission_error_max", "backlash_min", "backlash_max"):
+        assert getattr(pieces, name) == getattr(whole, name)  # searched for one by one, and side by side
 
 
 def off_axis(profiles, size, direction=0.7):
