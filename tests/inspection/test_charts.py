@@ -18,7 +18,7 @@ from gearwear.inspection.ranges import profile_range
 from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, topography_chart
 from gearwear.report.charts.panel import GROUPS
 from gearwear.report.charts.sheet import micrometres, nice, plain
-from gearwear.report.figures.colours import ALARM, INK, ORANGE, PAPER
+from gearwear.report.figures.colours import ALARM, INK, ORANGE, PAPER, TEAL
 from tests.inspection.synthetic import displaced, flanks
 
 
@@ -50,9 +50,10 @@ def trace_of(figure, found, evaluation, tooth, side, colour):
     left, right = GROUPS[side]
     width = (right - left) / 14
     column = left + tooth * width, left + (tooth + 1) * width
-    long = [line for line in lines(figure, colour) if len(line.get_xdata()) == len(evaluation.station)]
-    (mine,) = [line for line in long if column[0] <= np.nanmedian(line.get_xdata()) <= column[1]]
-    return np.asarray(mine.get_xdata()) - np.mean(column), np.asarray(mine.get_ydata())
+    long = [line.get_xydata() for line in lines(figure, colour) if len(line.get_xdata()) > len(evaluation.station)]
+    traces = np.concatenate(long).reshape(-1, len(evaluation.station) + 1, 2)  # each ends with a gap
+    (mine,) = [trace[:-1] for trace in traces if column[0] <= np.nanmedian(trace[:, 0]) <= column[1]]
+    return mine[:, 0] - np.mean(column), mine[:, 1]
 
 
 @pytest.mark.parametrize(("draw", "name"), [(profile_chart, "profile"), (helix_chart, "helix")])
@@ -99,9 +100,11 @@ def test_k_band_is_drawn_and_what_leaves_it_is_marked(points_of, pinion, width, 
     found = inspect(points_of, pinion, Settings(k_bands=KBands(profile=(band, band), source="a drawing")))
     assert found.profile.k.verdict(4, 0) is verdict  # 12 µm of slope do not fit into 8, and do into 60
     figure = profile_chart(Figure(), found, teeth=[4, 5])
-    thick = [line for line in lines(figure, ALARM) if line.get_linewidth() > 2.0]
-    marked = [np.isfinite(np.asarray(line.get_xdata(), float)).any() for line in thick]
-    assert marked == [verdict is BandVerdict.OUTSIDE] * 4
+    thick = [line.get_xdata().reshape(4, -1) for line in lines(figure, ALARM) if line.get_linewidth() > 2.0]
+    marked = [np.isfinite(trace).any() for line in thick for trace in line]
+    assert marked == ([True] * 4 if verdict is BandVerdict.OUTSIDE else [])
+    (edge,) = [line for line in lines(figure, TEAL) if line.get_linewidth() == 0.6]
+    assert len(edge.get_xdata()) == 4 * (2 * len(band.station) + 2)  # both limits of four flanks, closed, and a gap
     said = words(figure)
     assert any("K band (a drawing)" in text for text in said)
     assert micrometres(float(found.profile.k.excess.value[4, 0])) in said

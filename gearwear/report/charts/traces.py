@@ -15,6 +15,7 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import KBand
 from gearwear.inspection.sections import LineTraces
 from gearwear.report.charts.panel import Panel, draw_axes, draw_ground
+from gearwear.report.charts.pens import Pens
 from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SOURCES, WIDTH, headline, sheet
 from gearwear.report.charts.trace_table import draw_table, table_height
 from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, ORANGE, PAPER, TEAL, UNSEEN
@@ -31,6 +32,18 @@ HEAD, FOOT = 27.0, 20.0
 
 HEIGHTS = (120.0, 96.0)
 """Most height of the traces: of a single row, which fills an A4 page, and of several."""
+
+_AREAS = {"spread": {"color": BLUE, "alpha": 0.16, "lw": 0}, "band": {"color": TEAL, "alpha": 0.16, "lw": 0}}
+_LINES = {
+    "band": {"color": TEAL, "lw": 0.6},
+    "outside": {"color": ALARM, "lw": 2.2, "solid_capstyle": "butt"},
+    "line": {"color": ALARM, "lw": 0.6, "ls": (0, (4, 2))},
+    "cut": {"color": ALARM, "lw": 0.5, "ls": (0, (1, 2))},
+    "trace": {"color": INK, "lw": 0.8},
+    "own": {"color": ORANGE, "lw": 1.1},
+}
+"""What there is of each trace, the lowest first: its uncertainty and K band; the band's edge, what is outside of it, the mean line, where the trace
+leaves its column, and the trace at the common magnification or its own."""
 
 LENGTHS = tuple(m * 10.0**e for e in (1, 0, -1, -2) for m in (8.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 1.5, 1.2, 1.0))
 """Magnifications along the trace, falling."""
@@ -105,6 +118,7 @@ def _trace_chart(
     page = sheet(figure, max(HEAD + len(rows) * block + FOOT, A4))
     scale = magnification or _magnification(evaluation, Panel(page, evaluation, rows[0], columns, 0.0, 1, stretch).width)
     _head(page, inspection, evaluation, scale, stretch, section)
+    pens = Pens(_AREAS, _LINES)
     for i, row in enumerate(rows):
         panel = Panel(
             page, evaluation, row, columns, page.get_ylim()[1] - HEAD - i * block - 9.0 - stretch * extent, scale, stretch
@@ -112,10 +126,11 @@ def _trace_chart(
         draw_ground(panel)
         for side in Side:
             for place, tooth in enumerate(row):
-                _trace(panel, side, place, tooth)
+                _trace(panel, pens, side, place, tooth)
             _mean_trace(panel, side)
         draw_axes(panel, inspection.gear)
         draw_table(panel, inspection)
+    pens.draw(page)
     _foot(page, inspection, evaluation)
     return figure
 
@@ -153,7 +168,7 @@ def _head(
     page.text(WIDTH - 8, top - 19.5, f"{line}   ·   teeth numbered counter-clockwise seen from +z", fontsize=7, color=MUTED, ha="right", va="baseline")  # fmt: skip
 
 
-def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
+def _trace(panel: Panel, pens: Pens, side: Side, place: int, tooth: int) -> None:
     """One trace in its column, with its mean line, its uncertainty and its K band."""
     page, evaluation = panel.page, panel.evaluation
     x, half, common = panel.x(side, place), 0.5 * panel.width, panel.scale
@@ -170,34 +185,27 @@ def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     shown = np.where(np.abs(across) <= half, across, np.nan)
     wide = 2.0 * scale * evaluation.standard[tooth, side.index]
     low, high = (x + np.clip(shown + sign * wide, -half, half) for sign in (-1.0, 1.0))
-    page.fill_betweenx(height, low, high, color=BLUE, alpha=0.16, lw=0)
+    pens.area("spread", height, low, high)
     band = None if evaluation.k is None else evaluation.k.bands[side.index]
     if evaluation.k is not None and band is not None and math.isfinite(evaluation.k.shift[tooth, side.index]):
-        outside = _band(panel, x, scale, band, float(evaluation.k.shift[tooth, side.index]), zero, trace)
-        page.plot(x + np.where(outside, shown, np.nan), height, color=ALARM, lw=2.2, solid_capstyle="butt")
+        outside = _band(panel, pens, x, scale, band, float(evaluation.k.shift[tooth, side.index]), zero, trace)
+        pens.line("outside", x + np.where(outside, shown, np.nan), height)
     ends = np.array([evaluation.range.start, evaluation.range.end])
     line = scale * (evaluation.line_at(ends)[tooth, side.index] - zero)
     if np.abs(line).max() <= half:
-        page.plot(x + line, panel.y(ends), color=ALARM, lw=0.6, ls=(0, (4, 2)))
-    cut = np.where(np.abs(across) > half, np.clip(across, -half, half), np.nan)
-    if np.isfinite(cut).any():
-        page.plot(x + cut, height, color=ALARM, lw=0.5, ls=(0, (1, 2)))
-    page.plot(x + shown, height, color=INK if scale == common else ORANGE, lw=0.8 if scale == common else 1.1)
+        pens.line("line", x + line, panel.y(ends))
+    pens.line("cut", x + np.where(np.abs(across) > half, np.clip(across, -half, half), np.nan), height)
+    pens.line("trace" if scale == common else "own", x + shown, height)
     _clipped(panel, x, across, scale)
 
 
-def _band(panel: Panel, x: float, scale: int, band: KBand, shift: float, zero: float, trace: Floats) -> Floats:
+def _band(panel: Panel, pens: Pens, x: float, scale: int, band: KBand, shift: float, zero: float, trace: Floats) -> Floats:
     """Draw a band where it suits a trace best; where the trace is outside of it."""
     half = 0.5 * panel.width
     low, high = (x + np.clip(scale * (np.array(limit) + shift - zero), -half, half) for limit in (band.lower, band.upper))
     corner = panel.y(np.array(band.station))
-    panel.page.fill_betweenx(corner, low, high, color=TEAL, alpha=0.16, lw=0)
-    panel.page.plot(
-        np.concatenate([low, high[::-1], low[:1]]),
-        np.concatenate([corner, corner[::-1], corner[:1]]),
-        color=TEAL,
-        lw=0.6,
-    )
+    pens.area("band", corner, low, high)
+    pens.line("band", np.concatenate([low, high[::-1], low[:1]]), np.concatenate([corner, corner[::-1], corner[:1]]))
     station = panel.evaluation.station
     lower, upper = (np.interp(station, band.station, limit) + shift for limit in (band.lower, band.upper))
     return np.asarray(band.covers(station) & ((trace > upper) | (trace < lower)))
