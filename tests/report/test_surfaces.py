@@ -84,6 +84,20 @@ def test_the_budget_holds_for_any_number_of_teeth(teeth):
     assert flanks <= FLANK_VERTICES
 
 
+def test_the_budget_holds_where_a_flank_is_far_longer_than_high():
+    """Eight columns are drawn of seven cells: only rows can be spared."""
+    pieces = gear_surfaces(fake_arrays(80, columns=7, rows=71), worn=True)
+    assert sum(len(piece.vertices) for piece in pieces if "flank" in piece.name) <= FLANK_VERTICES
+
+
+def test_teeth_that_are_alike_come_once(arrays):
+    views = coloured_gears(arrays, ColourScale(40.0), worn=False)
+    drawn = scene(views, gear_surfaces(arrays, worn=False), None, eye_direction([], arrays.gear), arrays.gear)
+    times = {surface["name"]: surface["faces"]["times"] for surface in drawn["surfaces"]}
+    assert times.pop("end face") == 1
+    assert set(times.values()) == {arrays.gear.teeth}
+
+
 def unpacked(data, kind):
     return np.frombuffer(base64.b64decode(data), dtype="<" + kind)
 
@@ -99,8 +113,9 @@ def test_the_scene_holds_the_pieces_in_whole_numbers(arrays):
     for packed, piece in zip(drawn["surfaces"], [*worn, lost, *nominal], strict=True):
         corners = low + unpacked(packed["corners"]["data"], "u2").reshape(-1, 3) * (high - low) / 65535.0
         np.testing.assert_allclose(corners, piece.vertices, atol=1.01 * (high - low).max() / 131070.0)
-        faces = unpacked(packed["faces"]["data"], packed["faces"]["kind"]).reshape(-1, 3)
-        np.testing.assert_array_equal(faces, piece.faces)
+        once = unpacked(packed["faces"]["data"], packed["faces"]["kind"]).reshape(-1, 3).astype(int)
+        further = packed["faces"]["further"] * np.arange(packed["faces"]["times"])
+        np.testing.assert_array_equal((once + further[:, None, None]).reshape(-1, 3), piece.faces)
         starts, teeth = np.transpose(packed["teeth"])
         np.testing.assert_array_equal(np.repeat(teeth, np.diff([*starts, len(piece.vertices)])), piece.tooth)
     for i, packed in enumerate(drawn["surfaces"][: len(worn)]):

@@ -102,14 +102,24 @@ def tooth_labels(worn: Sequence[SurfaceTriangles], gear: Gear) -> list[dict[str,
 def _surface(piece: SurfaceTriangles, group: str, colour: str, low: Floats, high: Floats) -> dict[str, Any]:
     """A surface, its corners as whole parts of the box: a seventh of the size of decimal text, and within 1 µm for a gear of 130 mm."""
     step = (high - low) / 65535.0
-    kind = "u2" if len(piece.vertices) < 65536 else "u4"
     starts = np.flatnonzero(np.diff(piece.tooth, prepend=-1))
+    once, times = _repeated(piece.faces, starts)
+    kind = "u2" if once.max() < 65536 else "u4"
     return {
         "name": piece.name, "group": group, "colour": colour, "faceted": group == "lost",
         "corners": _packed(np.rint((piece.vertices - low) / np.where(step > 0.0, step, 1.0)), "u2"),
-        "faces": {"kind": kind} | _packed(piece.faces, kind),
+        "faces": {"kind": kind, "times": times, "further": len(piece.vertices) // times} | _packed(once, kind),
         "teeth": [[int(start), int(piece.tooth[start])] for start in starts],
     }  # fmt: skip
+
+
+def _repeated(faces: Ints, starts: Ints) -> tuple[Ints, int]:
+    """Faces of one tooth and how many teeth have the same; all faces and 1 where they differ. Corners of the teeth begin at `starts`."""
+    times = len(starts)
+    if len(faces) % times or (np.diff(starts, n=2) != 0).any():
+        return faces, 1
+    each = faces.reshape(times, -1, 3)
+    return (each[0], times) if (each == each[0] + starts[:, None, None]).all() else (faces, 1)
 
 
 def _values(um: Floats) -> dict[str, Any]:

@@ -239,7 +239,8 @@ def _fineness(arrays: ReportArrays, budget: int) -> tuple[int, int]:
     """Columns and rows of a flank: those of the maps, thinned alike to the budget."""
     columns, rows = len(arrays.roll_mm) + 1, max(len(arrays.z_mm) + 1, 2)
     thin = min(1.0, math.sqrt(budget / (2 * arrays.gear.teeth * columns * rows)))
-    return max(8, int(columns * thin)), max(2, int(rows * thin))
+    columns = max(8, int(columns * thin))
+    return columns, max(2, min(int(rows * thin), budget // (2 * arrays.gear.teeth * columns)))
 
 
 def _linear(new: Floats, old: Floats) -> Floats:

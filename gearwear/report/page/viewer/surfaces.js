@@ -13,10 +13,17 @@ function unpacked(kind, text) {
   return new { u2: Uint16Array, u4: Uint32Array, i2: Int16Array }[kind](bytes.buffer);
 }
 
+/** Faces that come so many times, each time of corners that lie so much further on. */
+function repeated(once, { times, further }) {
+  const faces = new Uint32Array(times * once.length);
+  for (let i = 0; i < times; i++) for (let k = 0; k < once.length; k++) faces[i * once.length + k] = i * further + once[k];
+  return faces;
+}
+
 /** A surface of the scene; its corners come as whole parts of the box. */
 function unpackedSurface(packed, [low, high]) {
   const whole = unpacked("u2", packed.corners.data);
-  const faces = unpacked(packed.faces.kind, packed.faces.data);
+  const faces = repeated(unpacked(packed.faces.kind, packed.faces.data), packed.faces);
   const corners = new Float32Array(whole.length);
   for (let i = 0; i < whole.length; i++) corners[i] = low[i % 3] + ((high[i % 3] - low[i % 3]) / 65535) * whole[i];
   const values = {};
@@ -195,9 +202,8 @@ class Painter {
       gl.vertexAttribPointer(location, 3, gl.FLOAT, false, 0, 0);
     }
     buffer(gl.ELEMENT_ARRAY_BUFFER, surface.faces);
-    const kind = surface.faces instanceof Uint32Array ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT;
     const columns = Object.entries(surface.values).map(([key, value]) => [key, buffer(gl.ARRAY_BUFFER, new Float32Array(value.at))]);
-    return { surface, array, kind, values: Object.fromEntries(columns) };
+    return { surface, array, values: Object.fromEntries(columns) };
   }
 
   /** Draw the shown groups as the camera sees them, with the values of a view coloured over a range. */
@@ -227,7 +233,7 @@ class Painter {
     gl.depthMask(true);
   }
 
-  drawOne({ surface, array, kind, values }, view, pixel) {
+  drawOne({ surface, array, values }, view, pixel) {
     const { gl, at } = this;
     const known = surface.values[view.key];
     gl.bindVertexArray(array);
@@ -242,6 +248,6 @@ class Painter {
     gl.uniform1i(at.faceted, surface.faceted ? 1 : 0);
     gl.uniform3fv(at.plain, rgb(surface.colour));
     gl.uniform3fv(at.inside, rgb(surface.group === "worn" ? this.colours.inside : surface.colour));
-    gl.drawElements(gl.TRIANGLES, surface.faces.length, kind, 0);
+    gl.drawElements(gl.TRIANGLES, surface.faces.length, gl.UNSIGNED_INT, 0);
   }
 }
