@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import io
 import json
 import re
 from dataclasses import replace
@@ -13,10 +14,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from markupsafe import Markup
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from PIL import Image
 
 from gearwear.design.quantity import with_std
 from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.pattern import Pattern
+from gearwear.report import figures
 from gearwear.report.page import blocks, view
 from gearwear.report.page.view import page, write_html
 from tests.report.fake import bare_results, changed, fake_arrays, fake_results
@@ -259,6 +264,35 @@ def test_nan_in_the_results_is_a_dash_on_the_page(little):
     for path in ("wear.found.volume_std", "measured.loop.held_out_after", "seen.base"):
         results = changed(results, path, float("nan"))
     assert "nan" not in Reader(page(results, little)).text.lower().split()
+
+
+def test_what_is_spared_in_a_drawing_is_not_seen():
+    """Corners are within a hundredth of a point of those that matplotlib writes, in both directions; pixels and words are its own."""
+    shades = np.random.default_rng(1).integers(0, 200, (40, 30))
+    figure = Figure()
+    axis = figure.add_axes((0.1, 0.1, 0.8, 0.8))
+    axis.plot(np.arange(50) * np.pi, np.sin(np.arange(50)), color="#123456")
+    axis.imshow(shades, extent=(0.0, 157.0, -1.0, 1.0), aspect="auto", interpolation="none")
+    axis.text(50.0, 0.0, "L 1.23456 2.34567")
+    own = io.StringIO()
+    with rc_context(figures.STYLE):
+        figure.savefig(own, format="svg", transparent=True)
+    written, spared = own.getvalue(), str(blocks.svg(figure, "x", trim=False))
+    assert len(spared) < 0.8 * len(written)
+    assert "L 1.23456 2.34567" in spared
+
+    def curve(text):
+        return re.search(r'd="([^"]*)"[^>]*#123456', text)[1]
+
+    exact = np.array(re.findall(r"[ML] (\S+) (\S+)", curve(written)), dtype=float)
+    start, steps = curve(spared)[1:].split("l")
+    corners = np.cumsum(np.array(f"{start} {steps}".split(), dtype=float).reshape(-1, 2), axis=0)
+    np.testing.assert_allclose(corners, exact, atol=0.00501)
+    one, other = (
+        np.asarray(Image.open(io.BytesIO(base64.b64decode(re.search(r"base64,([^\"]*)", text)[1]))).convert("RGBA"))
+        for text in (written, spared)
+    )
+    np.testing.assert_array_equal(one, other)
 
 
 @pytest.mark.long

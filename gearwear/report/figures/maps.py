@@ -71,7 +71,8 @@ def flank_map(axis: Axes, values_um: Floats, scale: ColourScale, across: int | N
     Axes
         Its image runs from −1 to 1 on the scale.
     """
-    from matplotlib.collections import PolyCollection
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
 
     values_um = thinned(values_um)
     teeth, _, rows, columns = values_um.shape
@@ -85,12 +86,14 @@ def flank_map(axis: Axes, values_um: Floats, scale: ColourScale, across: int | N
         block, place = divmod(tooth, across)
         for side in (0, 1):
             bottom, left = (blocks - 1 - block) * tall + (1 - side) * step_y + gap_y, place * step_x
-            frames.append([(left, bottom), (left + columns, bottom), (left + columns, bottom + rows), (left, bottom + rows)])
+            right, top = left + columns, bottom + rows
+            frames.append(Path([(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)], closed=True))
             canvas[bottom : bottom + rows, left : left + columns] = scale.fraction(values_um[tooth, side])
         axis.text(left + 0.5 * columns, bottom + 2 * step_y, str(tooth + 1), ha="center", va="center", fontsize=8, color=INK)
     # One artist for all grounds and one for all frames: hundreds of patches take longer than the picture itself.
-    axis.add_collection(PolyCollection(frames, facecolor="#e4e7ea", edgecolor="none", hatch="////", zorder=0.5), autolim=False)
-    axis.add_collection(PolyCollection(frames, facecolor="none", edgecolor=MUTED, linewidth=0.4, zorder=3), autolim=False)
+    outlines = Path.make_compound_path(*frames)
+    axis.add_patch(PathPatch(outlines, facecolor="#e4e7ea", linewidth=0.0, hatch="////", zorder=0.5))
+    axis.add_patch(PathPatch(outlines, facecolor="none", edgecolor=MUTED, linewidth=0.4, zorder=3))
     high, wide = canvas.shape
     axis.imshow(
         np.ma.masked_invalid(canvas), cmap=colours(), vmin=-1.0, vmax=1.0, origin="lower", extent=(0, wide, 0, high),
