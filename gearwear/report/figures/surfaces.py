@@ -21,7 +21,7 @@ from gearwear.design.twist import drawn_height, section_angle, segments, twisted
 from gearwear.report.figures.arrays import ReportArrays
 
 FLANK_VERTICES = 36000
-"""Vertices on all flanks of the 3-D view: a page of 2.5 to 4 MB, and smooth on a laptop."""
+"""Vertices on all flanks of the 3-D view: a page of 1.5 to 5 MB, and smooth on a laptop."""
 
 TURN_PER_ROW = 0.03
 """Rad that helical teeth may turn from one row of the nominal gear to the next."""
