@@ -61,6 +61,7 @@ from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, signed_difference, worn_volume
 from gearwear.wear.thickness import SectionThickness, thickness_of
+from gearwear.wear.unmeasured import thinnest_unmeasured
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
@@ -462,10 +463,9 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
         return thickness
     corrected = measured.corrected
     cells = corrected.with_deviation(corrected.points.deviation - measured.manufacture)
-    hollows = find_hollows(
-        cells, wear.mask, measured.worn_sides, thickness.widths, sections, thickness.as_made, measured.noise, measured.loop
-    )  # fmt: skip
-    return replace(thickness, hollows=hollows)
+    told = thickness.as_made, measured.noise, measured.loop
+    hollows = find_hollows(cells, wear.mask, measured.worn_sides, thickness.widths, sections, *told)
+    return replace(thickness, hollows=hollows, unmeasured=thinnest_unmeasured(thickness, wear, cells.grid, sections.band.reach))
 
 
 def _sections_gone(measured: MeasuredGear, sections: SectionSums) -> Bools:

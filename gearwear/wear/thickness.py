@@ -84,6 +84,8 @@ class SectionThickness(Card):
     drawn, made : (teeth, n_z) float or None
         Arc as it is drawn, and what effects of the maker add to it, mm: both are known between the places that are measured and up to the ends of the
         face, so that pooled sections are about both in their middle. None: the same in all sections.
+    unmeasured : ThinnestTooth or None
+        The thinnest of the worn teeth of which few sections have enough points, by their wear.
     otherwise : (float, float)
         How much thinner (≤ 0) and thicker (≥ 0) all teeth are, mm of arc, were effects that are taken for made or measured of the other kind, where the
         scan does not tell: a coat for thick teeth.
@@ -110,6 +112,7 @@ class SectionThickness(Card):
     drawn: Floats | None = None
     made: Floats | None = None
     otherwise: tuple[float, float] = (0.0, 0.0)
+    unmeasured: ThinnestTooth | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -323,6 +326,10 @@ class SectionThickness(Card):
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
             low = min(low, float(self.arc[at] - self.std[at]))
+        if self.unmeasured is not None:
+            if self.unmeasured.value < value:
+                return replace(self.unmeasured, high=min(high, self.unmeasured.high))
+            low = min(low, self.unmeasured.low)
         nominal = self.nominal if self.drawn is None else float(drawn[least.curve])
         return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]), nominal)
 
