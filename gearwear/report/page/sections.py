@@ -73,7 +73,7 @@ def _wear_words(results: Results) -> str:
         if results.effects:
             without = with_std(before.volume, before.volume_std, unit)
             text.append(f"without taking the effects of scan and manufacture out first it would have been {without}")
-    if worn.limit > 0.0:
+    if worn.limit > 0.0 and len(results.measured.worn_sides) < len(Side):  # where all flanks are worn, none shows what scatter is
         text.append(f"wear is seen from a mean depth of about {significant(1e3 * worn.limit, 2)}{SPACE}µm on")
     against = "the unworn gear's scan" if results.before_files else "design and manufacture effects"
     text.append(f"it is measured against {against}")
