@@ -58,7 +58,8 @@ MUTATIONS = [
         ("diagnose/active_face.py", "<= rules().blank_flanks", "<= 1.0", "diagnose/core/test_active_face.py"),
         ("diagnose/loop.py", "worn &= ~face.margins(fit.cells)", "pass", "diagnose/core/test_active_face.py"),
         ("diagnose/loop.py", "always |= {FACE_LEVEL}", "pass", "diagnose/core/test_active_face.py"),
-        ("diagnose/found.py", "size = 0.5 * helix_form_tolerance", "size = 0.005 * helix_form_tolerance", "diagnose/core/test_active_face.py"),
+        ("diagnose/effects/base.py", "for face in self.faces if not face.at_both_ends(self.gear)", "for face in ()", "diagnose/core/test_active_face.py"),
+        ("diagnose/loop.py", "len(ran) < len(Side)", "not ran", "diagnose/core/test_active_face.py"),
         # views brought to each other
         ("placing/accord.py", "STDS = 5.0", "STDS = 50.0", "placing/test_together.py"),
         ("placing/accord.py", "raised * covariance, information / raised", "9.0 * covariance, information / raised", "placing/test_together.py"),

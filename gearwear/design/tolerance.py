@@ -99,17 +99,3 @@ def profile_form_tolerance(module: float, flank_class: int | None) -> float:
 def profile_form_of_class_five(module: float) -> float:
     """f_fαT of class 5 at a normal module (mm), µm."""
     return 0.55 * module + 5.0
-
-
-def helix_form_tolerance(diameter: float, face_width: float, flank_class: int | None) -> float:
-    """Helix form tolerance f_fβT of a reference diameter and a face width (mm), mm (ISO 1328-1:2013, not rounded).
-
-    ``f_fβT = (0.07 √d + 0.45 √b + 4) √2^(A − 5)`` in µm.
-    """
-    steps = (USUAL_FLANK_CLASS if flank_class is None else flank_class) - 5
-    return float(1e-3 * helix_form_of_class_five(diameter, face_width) * CLASS_STEP**steps)
-
-
-def helix_form_of_class_five(diameter: float, face_width: float) -> float:
-    """f_fβT of class 5 at a reference diameter and a face width (mm), µm."""
-    return 0.07 * math.sqrt(diameter) + 0.45 * math.sqrt(face_width) + 4.0

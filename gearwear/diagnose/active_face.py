@@ -77,7 +77,10 @@ def active_faces(cells: Cells) -> tuple[ActiveFace, ...]:
             known = one.stretch(found[side.opposite])
             found |= {} if known is None else {side: known}
     height = grid.row_height
-    return tuple(ActiveFace(side, found[side].low * height, found[side].high * height) for side in Side if side in found)
+    return tuple(
+        ActiveFace(side, one.low * height, one.high * height if one.last < grid.rows else grid.gear.face_width)
+        for side, one in sorted(found.items(), reverse=True)
+    )
 
 
 def _heights(cells: Cells) -> Floats:

@@ -13,7 +13,6 @@ from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.quantity import NORMAL_95, counted, pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.design.tolerance import helix_form_tolerance
 from gearwear.diagnose.as_views import share_moved
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
 from gearwear.diagnose.covariance import CellCovariance
@@ -162,7 +161,7 @@ class Loop(Card):
     hidden : (m, k) float or None
         What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
     made : (m, sides) float or None
-        How high each side worn all over its face may stand as it was made, mm: all over it, and unlike `hidden` no doubt that it is worn. None where
+        How high each side that does not show it at both ends of its face may stand as it was made, mm: all over it, and unlike `hidden` no doubt that it is worn. None where
         a scan of the gear unworn shows it.
     others : tuple of Loop
         The same scan explained with other sides worn throughout, as far as it does not exclude them.
@@ -211,7 +210,7 @@ class Loop(Card):
         """Standard deviation of how high the flanks of left and right stood as they were made, mm: of `level_std` and `made`."""
         known = list(self.level_std)
         if self.made is not None:
-            for side, column in zip(sorted(self.context.worn), self.made.T, strict=False):
+            for side, column in zip(sorted(self.context.open_sides), self.made.T, strict=False):
                 known[side.index] = math.hypot(known[side.index], float(column.max(initial=0.0)))
         return known[0], known[1]
 
@@ -363,8 +362,8 @@ def account(
         if one.kind is Kind.MANUFACTURE
         and not (told and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
     ]
-    unseen = _made_on(problem.context.worn, fit, [form_of_all(patterns, len(fit.target)), *off])
-    hidden, made = fit.hidden(model, noise), np.hstack([unseen, _beyond_margins(problem.context, fit)])
+    made = _made_on(problem.context.open_sides, fit, [form_of_all(patterns, len(fit.target)), *off])
+    hidden = fit.hidden(model, noise)
     start, end = steps[len(levels)], steps[-1]
     return Loop(
         effects=named,
@@ -415,21 +414,6 @@ def _made_on(worn: frozenset[Side], fit: Fit, off: list[Floats]) -> Floats:
     size = math.sqrt(sum(float(np.var(field[seen])) for field in off)) if seen.any() else 0.0
     sides = [np.where(flank & (points.side == int(side)), size, 0.0) for side in sorted(worn) if size > 0.0]
     return np.column_stack([np.zeros((len(fit.target), 0)), *sides])
-
-
-def _beyond_margins(context: Context, fit: Fit) -> Floats:
-    """(m, k) how high flanks of which one end alone shows how they were made may stand beyond it, as they lean and bend within half of the helix form
-    tolerance of their class."""
-    gear, points = context.gear, fit.cells.points
-    size = 0.5 * helix_form_tolerance(2.0 * gear.reference_radius, gear.face_width, gear.tolerance.flank_class)
-    fields = [np.zeros((len(fit.target), 0))]
-    for face in context.faces:
-        if not face.at_both_ends(gear):
-            margin, own = face.margins(fit.cells), (points.surface == FLANK) & (points.side == int(face.side)) & fit.cells.seen
-            up = 2.0 * points.position[:, 2] / gear.face_width - 1.0
-            for shape in (0.5 * up, up**2):
-                fields.append(np.where(own & ~margin, size * (shape - float(shape[margin].mean())), 0.0))
-    return np.column_stack(fields)
 
 
 def _by_gain(problem: Problem, model: Model) -> list[int]:

@@ -132,11 +132,13 @@ def close_loop(
     if _still_in(plain, low):
         apart = cells.grid.on_flanks(low)
         plain = searched_without(alone)
-    costs = SideCosts({alone: 0.0})
-    decided = worn is not None or bool(context.faces)
-    if not decided:  # whether a side is worn throughout the others tell
-        others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
-        costs = side_costs(others_alone, plain.problem, plain.model, noise)
+    costs, ran = SideCosts({alone: 0.0}), frozenset(face.side for face in context.faces)
+    if worn is None and len(ran) < len(Side):  # whether a side is worn throughout the others tell
+        told = cells.grid.on_flanks(low)
+        for face in context.faces:
+            told |= (cells.points.surface <= FILLET) & face.worn(cells.points, cells.grid.row_height)
+        others_alone = replace(plain.fit, cells=cells.without(told)) if told.any() else plain.fit
+        costs = side_costs(others_alone, plain.problem, plain.model, noise).beside(ran)
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == alone else searched_without(sides), noise, always)
@@ -144,7 +146,7 @@ def close_loop(
 
     taken = explained(costs.chosen)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
-    refuted = not decided and _refuted(taken, cells, flanks)
+    refuted = worn is None and not ran and _refuted(taken, cells, flanks)
     if refuted:
         taken = explained(frozenset(Side))
     others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)

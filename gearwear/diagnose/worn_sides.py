@@ -66,6 +66,10 @@ class SideCosts:
         as_likely = self.alike < self.by_sides[cheapest] + rules().close
         return NO_SIDE if len(cheapest) == len(Side) and as_likely else cheapest
 
+    def beside(self, ran: frozenset[Side]) -> SideCosts:
+        """Of the other sides alone, where flanks of some show where their mate ran."""
+        return SideCosts({worn: cost for worn, cost in self.by_sides.items() if not worn & ran}, self.alike) if ran else self
+
     @property
     def beyond_doubt(self) -> bool:
         """Whether every other hypothesis costs so much more than the chosen one that more cells would say the same."""

@@ -13,7 +13,7 @@ from enum import StrEnum
 from functools import lru_cache
 
 from gearwear.design.gear import Gear
-from gearwear.design.tolerance import CLASS_STEP, helix_form_of_class_five, profile_form_of_class_five
+from gearwear.design.tolerance import CLASS_STEP, profile_form_of_class_five
 from gearwear.errors import InputError
 
 FOOTNOTE = (
@@ -253,7 +253,7 @@ def _class_five_2013(size: Size, k: int) -> Tolerances:
     cumulative = 0.002 * d + 0.55 * math.sqrt(d) + 0.7 * m + 12.0
     profile_slope, profile_form = 0.4 * m + 0.001 * d + 4.0, profile_form_of_class_five(m)
     helix_slope = 0.05 * math.sqrt(d) + 0.35 * math.sqrt(b) + 4.0
-    helix_form = helix_form_of_class_five(d, b)
+    helix_form = 0.07 * math.sqrt(d) + 0.45 * math.sqrt(b) + 4.0
     return Tolerances(
         single_pitch=single,
         cumulative_pitch=cumulative,

@@ -108,6 +108,11 @@ class Context:
         return self.worn | {face.side for face in self.faces}
 
     @property
+    def open_sides(self) -> frozenset[Side]:
+        """Those of which flanks do not stand as made at both ends of the face: how they were made in between no flank of theirs tells."""
+        return self.worn | {face.side for face in self.faces if not face.at_both_ends(self.gear)}
+
+    @property
     def pitch_roll(self) -> float:
         """Length of roll of the pitch point, mm: at the reference circle where there is no mate."""
         if self.mate is None:
