@@ -2,7 +2,8 @@
 
 A pinion is mostly wider than its gear. What no mate touches does not wear: at one end or both of the worn flanks a strip stands as it was made, and ends at
 a ledge. No cutter leaves one: heights of a made flank go smoothly along the face, as a polynomial does, and a polynomial follows no ledge. So each side is
-asked by one cost, that of `worn_sides`, whether a stretch lies low beside smooth heights, or smoother ones explain them as well.
+asked by one cost, that of `worn_sides`, whether a stretch lies low beside smooth heights, or smoother ones explain them as well. Where tips or bottom lands have
+the same ledge, a scanner stitched there.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from numpy.polynomial.legendre import legvander
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells
 from gearwear.robust import scale_about
@@ -76,10 +77,11 @@ def active_faces(cells: Cells) -> tuple[ActiveFace, ...]:
         if side not in found and side.opposite in found:  # one mate ran on both
             known = one.stretch(found[side.opposite])
             found |= {} if known is None else {side: known}
-    height = grid.row_height
+    height, elsewhere = grid.row_height, [_Rows.of(heights) for heights in _untouched(cells)]
     return tuple(
         ActiveFace(side, one.low * height, one.high * height if one.last < grid.rows else grid.gear.face_width)
         for side, one in sorted(found.items(), reverse=True)
+        if not any(rows.stretch(one) for rows in elsewhere)
     )
 
 
@@ -87,12 +89,24 @@ def _heights(cells: Cells) -> Floats:
     """Mean height of each row of each flank over those of its side's columns, (teeth, 2, rows) mm; nan where less than half of a row was seen."""
     shape = cells.grid.flank_shape
     heights = np.where(shape(cells.seen), shape(cells.points.deviation), np.nan)
+    return np.stack([_row_means(heights[:, side.index]) for side in Side], axis=1)
+
+
+def _untouched(cells: Cells) -> list[Floats]:
+    """The same of tips and of bottom lands, (teeth, rows) mm each, which no mate touches: where they go up and down with the flanks, the scanner did it."""
+    grid, deviation = cells.grid, np.where(cells.seen, cells.points.deviation, np.nan)
+    blocks = (deviation[start : start + size] for start, size in (grid.blocks[surface] for surface in (TIP, ROOT)))
+    return [_row_means(block.reshape(grid.gear.teeth, grid.rows, -1)) for block in blocks]
+
+
+def _row_means(heights: Floats) -> Floats:
+    """Mean of each row, (teeth, rows) mm, of heights (teeth, rows, columns) about those of their columns; nan where less than half of a row was seen."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # rows and columns nobody saw
-        heights = heights - np.nanmedian(heights, axis=(0, 2))[None, :, None, :]
-        often = np.isfinite(heights).mean(axis=3) > rules().known_flank
-        rows = np.where(often, np.nanmean(heights, axis=3), np.nan)
-        return np.asarray(rows - np.nanmedian(rows, axis=2, keepdims=True))
+        heights = heights - np.nanmedian(heights, axis=(0, 1))
+        often = np.isfinite(heights).mean(axis=2) > rules().known_flank
+        rows = np.where(often, np.nanmean(heights, axis=2), np.nan)
+        return np.asarray(rows - np.nanmedian(rows, axis=1, keepdims=True))
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK, locate
+from gearwear.design.surface import FLANK, ROOT, TIP, locate
 from gearwear.diagnose.active_face import active_faces
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.placing.cells import CellGrid, bin_points, noise
@@ -79,6 +79,14 @@ def test_where_one_end_alone_shows_it_the_stretch_goes_on_to_the_other():
 )
 def test_what_no_narrower_mate_leaves_is_none(heights):
     assert active_faces(cells_with(heights)) == ()
+
+
+@pytest.mark.parametrize("land", [TIP, ROOT], ids=["tips", "bottom lands"])
+def test_a_ledge_that_lands_show_too_is_the_scanners(land):
+    """No mate touches them: a scanner that stitches two heights of a gear lifts all of what lies above."""
+    z = SOUND.position[:, 2]
+    stepped = SOUND.with_deviation(SOUND.deviation - np.where((SOUND.surface == land) & (z < 11.0), 0.020, 0.0))
+    assert active_faces(cells_with(low_between(-1.0, 11.0, 0.015), stepped)) == ()
 
 
 def test_cells_beside_it_are_as_made_and_the_others_are_not():
