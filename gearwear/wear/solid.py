@@ -367,7 +367,7 @@ def worn_bodies(nominal: Triangles, worn: Triangles, seen: tuple[float, float] =
         return volume > SLIVER_VOLUME and depth > FILM_THICKNESS and (depth > seen[0] or volume > seen[1])
 
     pieces = [(body.volume, 2.0 * body.volume / body.area, body) for body in _pieces(_triangles(difference))]
-    return [body for volume, depth, body in sorted(pieces, key=lambda piece: -piece[0]) if counts(volume, depth)]
+    return [_in_single(body) for volume, depth, body in sorted(pieces, key=lambda piece: -piece[0]) if counts(volume, depth)]
 
 
 def _not_touching(nominal: Triangles, worn: Triangles) -> Triangles:
@@ -393,6 +393,16 @@ def _not_touching(nominal: Triangles, worn: Triangles) -> Triangles:
         low = np.union1d(a[pinched], b[pinched])
         vertices[low] -= FILM_THICKNESS * outward[low]
     return Triangles(vertices, faces)
+
+
+def _in_single(body: Triangles) -> Triangles:
+    """A body whose vertices stay apart in single precision: in a file the others fall together, and what is left of triangles between them is open."""
+    _, first, corner = np.unique(body.vertices.astype(np.float32), axis=0, return_index=True, return_inverse=True)
+    if len(first) == len(body.vertices):
+        return body
+    faces = corner.reshape(-1)[body.faces]
+    whole = (faces != np.roll(faces, -1, axis=1)).all(axis=1)
+    return Triangles(body.vertices[first], faces[whole])
 
 
 def _outward(surface: Triangles) -> Floats:

@@ -81,7 +81,7 @@ FILES = {
     "thickness.csv",
 }
 MORE = {"sections.csv", "sections.dxf", "points.ply", "points.npz"}
-THINNED = 5
+THINNED = 6
 ASKED = (
     "--sections",
     "0,7.5,15",
@@ -122,7 +122,7 @@ def missing(report: Any, keys: str = KEYS) -> list[str]:
 
 @pytest.fixture(scope="session")
 def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Said, dict[str, Any]]:
-    """A fifth of the bundled example's points with all that can be asked for; README has the whole of it, and its blocks are run."""
+    """A sixth of the bundled example's points with all that can be asked for; README has the whole of it, and its blocks are run."""
     folder = tmp_path_factory.mktemp("example")
     said = run("compare", PAIR, thinner_example(folder, THINNED), "--out", folder / "out", *ASKED)
     return folder / "out", said, strict_json(folder / "out" / "report.json")

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+import trimesh
 
+from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.wear.solid import Triangles, signed_difference, worn_bodies
 
 CORNERS = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=np.float64)
@@ -32,6 +34,19 @@ def test_each_body_is_closed():
     for body in bodies:
         start, end = body.faces.ravel(), np.roll(body.faces, -1, axis=1).ravel()
         assert sorted(zip(start, end, strict=True)) == sorted(zip(end, start, strict=True))
+
+
+def test_a_body_is_closed_in_the_single_precision_of_a_file(tmp_path):
+    """A wedge off a cube's top that ends 1e-8 mm below an edge of it, not on it: 0.25 mm³."""
+    lower = np.where(CORNERS[:, 2] == 1.0, np.where(CORNERS[:, 0] == 1.0, 0.5, 1e-8), 0.0)
+    worn = Triangles(CORNERS - lower[:, None] * [0.0, 0.0, 1.0], FACES[::-1])
+    (body,) = worn_bodies(boxes((0.0, 1.0)), worn)
+    assert body.volume == pytest.approx(0.25, abs=1e-7)
+    write_stl(tmp_path / "body.stl", [body], "body")
+    write_3mf(tmp_path / "body.3mf", [body], ["body"])
+    for name in ("body.stl", "body.3mf"):
+        read = trimesh.load(tmp_path / name, force="mesh")
+        assert read.is_watertight and read.volume == pytest.approx(0.25, abs=1e-6)
 
 
 def test_nothing_gone_leaves_no_body():
