@@ -11,7 +11,7 @@ from gearwear.arrays import Floats
 from gearwear.errors import InputError
 from gearwear.loaded.steel import Material
 from gearwear.running.effects.base import RunEffect
-from gearwear.running.found import FoundRunning, SecondLoop
+from gearwear.running.found import SecondLoop
 from gearwear.wear_law.forecast import Band, CyclesLeft, WearForecast
 from gearwear.wear_law.running import forecast_by_running
 from gearwear.wear_law.study import CyclesToLimit, WearStudy
@@ -93,10 +93,7 @@ def reached(cycles: Floats, grown: Floats, limit: float) -> float:
 
 def shown_gap(second: SecondLoop) -> float:
     """The gap that this gear's own flanks show, mm; what a mate that wears takes of the whole is not in it."""
-    gap, rate = (_size(second.effect(name), key) for name, key in (("misalignment", "gap_um"), ("mate_wear", "rate")))
-    return 1e-3 * gap / (1.0 + rate)
-
-
-def _size(running: FoundRunning | None, name: str) -> float:
-    value = 0.0 if running is None else running.parameters[name].value
-    return float(value) if isinstance(value, float) else 0.0
+    askew = second.effect("misalignment")
+    gap = 0.0 if askew is None else askew.parameters["gap_um"].value
+    # The gap was fitted beside this rate, whether or not that was named.
+    return 1e-3 * gap / (1.0 + second.conditions.mate_rate) if isinstance(gap, float) else 0.0

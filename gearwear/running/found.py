@@ -9,6 +9,7 @@ from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.quantity import pretty_unit
 from gearwear.diagnose.parameter import ParameterEstimate
+from gearwear.running.conditions import Conditions
 from gearwear.running.effects.base import RunningEffect
 from gearwear.running.wear_map import WearMap
 
@@ -102,6 +103,8 @@ class SecondLoop(Card):
         k w N, mm.
     chi_square : float
         Of what is left, by all errors.
+    conditions : Conditions
+        As fitted, with effects too whose size does not stand out and which are not named; the usual ones where the law stands.
     """
 
     map: WearMap
@@ -112,6 +115,7 @@ class SecondLoop(Card):
     depth: Floats
     amount: float
     chi_square: float
+    conditions: Conditions
 
     def effect(self, name: str) -> FoundRunning | None:
         """One of the effects by its name."""

@@ -105,9 +105,10 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
     rounds = [effect for effect in running_effects() if isinstance(effect, RoundEffect)]
     traced += [effect for effect in (_round(effect, place) for effect in rounds) if effect is not None]
     after = by_law if kept is None else best.fit
+    ran = Conditions() if kept is None else conditions_of(best.effects, best.fit.sizes, best.model.usual)
     return SecondLoop(
         map=place, effects=tuple(traced), before=before, after=last, law=by_law.depth, depth=after.depth,
-        amount=after.amount, chi_square=after.cost,
+        amount=after.amount, chi_square=after.cost, conditions=ran,
     )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.loaded.steel import Material
 from gearwear.running import forecast
+from gearwear.running.conditions import Conditions
 from gearwear.running.effects import running_effects
 from gearwear.running.forecast import reached, run_on, shown_gap
 from gearwear.running.found import Errors, FoundRunning, SecondLoop
@@ -34,10 +35,11 @@ def found(name: str, **sizes: float) -> FoundRunning:
     )  # fmt: skip
 
 
-def second(*effects: FoundRunning) -> SecondLoop:
+def second(*effects: FoundRunning, mate_rate: float = 0.0) -> SecondLoop:
     place = map_of(RanWear(single_um=6.0))
     return SecondLoop(
-        map=place, effects=effects, before=NOTHING, after=NOTHING, law=place.mean, depth=place.mean, amount=0.006, chi_square=1.0
+        map=place, effects=effects, before=NOTHING, after=NOTHING, law=place.mean, depth=place.mean, amount=0.006, chi_square=1.0,
+        conditions=Conditions(mate_rate=mate_rate),
     )  # fmt: skip
 
 
@@ -52,8 +54,9 @@ def study() -> WearStudy:
 def test_the_gap_that_shows_is_what_a_mate_that_wears_leaves_of_it():
     assert shown_gap(second()) == 0.0
     assert shown_gap(second(found("misalignment", gap_um=-30.0))) == pytest.approx(-0.030)
-    both = second(found("misalignment", gap_um=60.0), found("mate_wear", rate=1.0))
-    assert shown_gap(both) == pytest.approx(0.030)
+    for named in ((), (found("mate_wear", rate=1.0),)):
+        both = second(found("misalignment", gap_um=60.0), *named, mate_rate=1.0)
+        assert shown_gap(both) == pytest.approx(0.030)
 
 
 def test_what_was_found_is_what_is_run_with(study: WearStudy, monkeypatch: pytest.MonkeyPatch):

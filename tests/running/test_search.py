@@ -14,6 +14,7 @@ from gearwear.running.conditions import Conditions
 from gearwear.running.effects import running_effects
 from gearwear.running.effects.base import OtherSideEffect, RoundEffect, RunEffect
 from gearwear.running.fit import RunModel, doubted, whole_errors
+from gearwear.running.forecast import shown_gap
 from gearwear.running.found import SecondLoop
 from gearwear.running.search import _grown
 from tests.running.maps import LOAD, SINGLE_UM, map_of, on_map, shared_runs, traced
@@ -65,6 +66,14 @@ def test_a_mate_that_wears_too_is_told_where_its_wear_takes_the_gap_away():
     rate, gap = wore.parameters["rate"], askew_too.parameters["gap_um"]
     assert abs(rate.value - 1.0) < 3.0 * rate.std  # type: ignore[operator]
     assert abs(gap.value - 30.0) < min(10.0, 3.0 * gap.std)  # type: ignore[operator,type-var]
+
+
+@pytest.mark.long
+def test_the_forecast_runs_with_the_gap_that_shows_though_the_mates_wear_does_not_stand_out():
+    """Put in: 20 µm and a mate 0.8 times as soft, of which these flanks wear 11 µm off."""
+    found = traced(replace(SHARED, gap_um=20.0, mate_rate=0.8), seed=1)
+    assert found.effect("mate_wear") is None and found.conditions.mate_rate > 0.0
+    assert 1e3 * shown_gap(found) == pytest.approx(20.0 / 1.8, abs=3.0)
 
 
 @pytest.mark.long
