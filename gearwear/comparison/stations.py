@@ -481,12 +481,12 @@ def _running(
     design: Design, law: WearStudy, other: WearStudy | None, as_made: Cells, mate: Gear, loop: Loop | None, noise: float
 ) -> tuple[WearStudy, SecondLoop | str]:
     """How the pair ran under the load that the design states, and the wear law with the forecast that follows from it."""
-    if design.load is None:
+    load, pinion = design.load, design.gears["pinion"]
+    if load is None:
         return law, NO_LOAD
-    width = common_width(design.gears["pinion"], design.gears["gear"])
-    per_width = design.load.force(design.gears["pinion"].base_radius, width) / width
-    material = Material(design.load.elastic_modulus, design.load.poisson)
-    ran = trace_running(law, as_made, mate, design.centre_distance, per_width, material, loop, noise, other)
+    width, material = common_width(pinion, design.gears["gear"]), Material(load.elastic_modulus, load.poisson)
+    per_width = load.force(pinion.base_radius, width) / width
+    ran = trace_running(law, as_made, mate, design.centre_distance, per_width, material, loop, noise, other, load.misalignment)
     return (law if isinstance(ran, str) else run_on(law, ran, per_width, material)), ran
 
 

@@ -44,6 +44,8 @@ class Conditions:
         Length along the face over which slices hold together, in modules.
     corners : bool
         Whether tip corners touch, as sharp ones do; without, a pair begins and ends with the path of contact.
+    stated : float
+        What of `misalignment` the design states, mm; a mate that wears takes no more of it.
     """
 
     misalignment: float = 0.0
@@ -53,6 +55,7 @@ class Conditions:
     softness: float = 1.0
     coupling_modules: float = COUPLING_MODULES
     corners: bool = True
+    stated: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +74,8 @@ class Runs:
     material : Material
     longest : float
         k N up to which is run, mm²/N.
+    stated : float
+        Gap that the design states, mm; + opens towards z = b on the worn flanks.
     kept : dict of Conditions to (MOMENTS, slices, n) float
         Depth on all places of the map by the runs that were made, mm: `of` adds to it. A copy with other depths on the map may share it, one
         with another pair must not.
@@ -82,6 +87,7 @@ class Runs:
     load_per_width: float
     material: Material
     longest: float
+    stated: float = 0.0
     kept: dict[Conditions, Floats] = field(default_factory=dict, repr=False, compare=False)
 
     @property
@@ -93,6 +99,11 @@ class Runs:
     def _uneven(self) -> bool:
         """Whether flanks carry unevenly across the face though nothing is askew."""
         return uneven_across_face(self.map.gear, self.mate)
+
+    @property
+    def usual(self) -> Conditions:
+        """As the design states it."""
+        return Conditions(misalignment=self.stated, stated=self.stated)
 
     def of(self, conditions: Conditions) -> Floats:
         """(MOMENTS, m) depth at the places of the map, mm."""

@@ -94,6 +94,6 @@ def reached(cycles: Floats, grown: Floats, limit: float) -> float:
 def shown_gap(second: SecondLoop) -> float:
     """The gap that this gear's own flanks show, mm; what a mate that wears takes of the whole is not in it."""
     askew = second.effect("misalignment")
-    gap = 0.0 if askew is None else askew.parameters["gap_um"].value
+    whole = second.conditions.stated if askew is None else 1e-3 * float(np.asarray(askew.parameters["gap_um"].value))
     # The gap was fitted beside this rate, whether or not that was named.
-    return 1e-3 * gap / (1.0 + second.conditions.mate_rate) if isinstance(gap, float) else 0.0
+    return whole / (1.0 + second.conditions.mate_rate)

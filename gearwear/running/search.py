@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.parameter import Role
-from gearwear.running.conditions import Conditions, Runs
+from gearwear.running.conditions import Runs
 from gearwear.running.effects import running_effects
 from gearwear.running.effects.base import RoundEffect, RunEffect, conditions_of
 from gearwear.running.effects.elastic_sharing import ElasticSharing
@@ -105,7 +105,7 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
     rounds = [effect for effect in running_effects() if isinstance(effect, RoundEffect)]
     traced += [effect for effect in (_round(effect, place) for effect in rounds) if effect is not None]
     after = by_law if kept is None else best.fit
-    ran = Conditions() if kept is None else conditions_of(best.effects, best.fit.sizes, best.model.usual)
+    ran = runs.usual if kept is None else conditions_of(best.effects, best.fit.sizes, best.model.usual)
     return SecondLoop(
         map=place, effects=tuple(traced), before=before, after=last, law=by_law.depth, depth=after.depth,
         amount=after.amount, chi_square=after.cost, conditions=ran,
@@ -138,14 +138,15 @@ def _grown(
 ) -> list[_Step]:
     """Runs with ever more effects, each step the best that can be added, as far as the cost falls."""
     # Sharp corners or none: nobody knows, so that the better of the two counts and the other is part of every ±.
-    both = [RunModel(runs, usual=Conditions(corners=there)) for there in (True, False)]
+    both = [RunModel(runs, usual=replace(runs.usual, corners=there)) for there in (True, False)]
     first = min((_Step(model, fitted(model), ()) for model in both), key=lambda step: step.fit.cost)
     steps = [first]
     while len(steps) <= MOST_SIZES:
         last = steps[-1]
         near = tuple(round(size / effect.step) for size, effect in zip(last.fit.sizes, last.effects, strict=True))
-        more = [effect for effect in sized if effect not in last.effects]
-        models = [replace(last.model, effects=(*last.effects, effect), near=(*near, 0)) for effect in more]
+        starts = [(effect, start) for effect in sized if effect not in last.effects for start in effect.starts(runs.usual)]
+        more = [effect for effect, _ in starts]
+        models = [replace(last.model, effects=(*last.effects, effect), near=(*near, start)) for effect, start in starts]
         fits = [fitted(model) for model in models]
         if not fits:
             break
@@ -153,15 +154,15 @@ def _grown(
         i = int(np.argmin(costs))
         if not costs[i] < dear(last.effects, last.fit):
             break
-        alike = tuple(
-            effect.name for effect, cost in zip(more, costs, strict=True) if effect is not more[i] and cost < costs[i] + ALIKE
-        )
+        near_best = [effect.name for effect, cost in zip(more, costs, strict=True) if cost < costs[i] + ALIKE]
+        alike = tuple(name for name in dict.fromkeys(near_best) if name != more[i].name)
         steps.append(_Step(models[i], fits[i], alike))
     return steps
 
 
 def _sized(traced: list[FoundRunning], best: _Step, errors: Floats, unnamed: Sequence[RunEffect]) -> list[FoundRunning]:
-    """The effects with their sizes, all of them as fitted together in the end; without those that do not stand out from their ±.
+    """The effects with their sizes, all of them as fitted together in the end; without those that do not stand out from their ±, or from what
+    the design states.
 
     What stands out is judged by the errors and the effects that were named; the ± that is told also holds what effects that were not named
     may do to a size.
@@ -177,7 +178,8 @@ def _sized(traced: list[FoundRunning], best: _Step, errors: Floats, unnamed: Seq
             continue
         value, slope = _reported(named.effect, best, ())
         _, slope_of_all = _reported(named.effect, best, unnamed)
-        if abs(value) > SURE_STDS * math.sqrt(float(slope @ covariance @ slope)):
+        as_stated = named.effect.reported(best.model.usual)
+        if abs(value - as_stated) > SURE_STDS * math.sqrt(float(slope @ covariance @ slope)):
             (parameter,) = named.effect.parameters
             spread = math.sqrt(float(slope_of_all @ whole @ slope_of_all))
             result.append(replace(named, parameters={parameter.name: parameter.estimate(value, spread)}))
@@ -190,7 +192,7 @@ def _reported(effect: RunEffect, best: _Step, unnamed: Sequence[RunEffect]) -> t
     sizes, steps = np.array([*best.fit.sizes, *(0.0 for _ in unnamed)]), np.array([effect.step for effect in effects])
 
     def at(values: Floats) -> float:
-        return effect.reported(conditions_of(effects, tuple(values.tolist())))
+        return effect.reported(conditions_of(effects, tuple(values.tolist()), best.model.usual))
 
     slope = [(at(sizes + way) - at(sizes - way)) / (2.0 * way.sum()) for way in np.diag(0.01 * steps)]
     return at(sizes), np.array(slope)

@@ -39,6 +39,7 @@ def trace_running(
     loop: Loop | None,
     noise: float,
     other: WearStudy | None = None,
+    misalignment: float = 0.0,
 ) -> SecondLoop | str:
     """Trace the wear of one side to how the pair ran.
 
@@ -60,6 +61,8 @@ def trace_running(
         Scatter of points, mm.
     other : WearStudy or None
         The wear law on the other side; None where that is not worn.
+    misalignment : float
+        That the design states, mm; + opens towards z = b on the pinion's left flanks, and on left flanks of the gear.
 
     Returns
     -------
@@ -81,7 +84,9 @@ def trace_running(
         place = wear_map(cells, study.side, np.array(study.teeth), path, loop, noise)
         if float(place.mean.max()) > DEEPEST:
             return f"wear is {1e3 * float(place.mean.max()):.0f} µm deep: beyond {1e3 * DEEPEST:.0f} µm the sliding of unworn flanks no longer holds"
-        runs = Runs(place, mate, centre_distance, load_per_width, material, REACH * amount / load_per_width)
+        runs = Runs(
+            place, mate, centre_distance, load_per_width, material, REACH * amount / load_per_width, study.side * misalignment
+        )
         low, high = path.alone_pinion or (math.inf, math.inf)
         alone = (place.roll > low) & (place.roll < high)
         traced = find_running(place, law_basis(place, mate, centre_distance, fit.sharing), runs, alone)

@@ -48,6 +48,7 @@ class Stub:
         return np.diag([0.001**2, *(self.with_unnamed**2 for _ in unnamed)])
 
     effects = (GAP,)
+    usual = Conditions()
 
 
 @pytest.mark.parametrize(("stds", "named"), [(2.9, False), (3.1, True), (-3.1, True)])

@@ -20,19 +20,26 @@ def running_words(loop: SecondLoop) -> str:
     """What the pattern of the wear says of how the pair ran."""
     if not loop.effects:
         return "The pattern of the wear shows no effect of running beside the wear law."
-    return f"By the pattern of the wear, {listed(map(_effect_words, loop.effects))}."
+    stated = loop.conditions.stated
+    return f"By the pattern of the wear, {listed([_effect_words(effect, stated) for effect in loop.effects])}."
 
 
-def _effect_words(effect: FoundRunning) -> str:
-    """One effect with its numbers, and what it cannot be told from."""
+def _effect_words(effect: FoundRunning, stated: float = 0.0) -> str:
+    """One effect with its numbers, and what it cannot be told from; of a gap also what the design states of it, mm."""
     shown = dict(effect.parameters)
     towards = ""
     gap = shown.get("gap_um")
     if gap is not None and isinstance(gap.value, float):
-        towards = f", open towards {'z = b' if gap.value > 0.0 else 'z = 0'}"
+        towards = f", open towards {_open_end(gap.value)}"
+        if stated != 0.0:
+            towards += f", where {number(abs(1e3 * stated), 0)}{SPACE}µm towards {_open_end(stated)} are stated"
         shown["gap_um"] = type(gap)(abs(gap.value), gap.std, gap.unit)
     text = effect.effect.phrase.format(**{name: quantity(item) for name, item in shown.items()})
     return text + towards + or_words(effect.alternatives)
+
+
+def _open_end(gap: float) -> str:
+    return "z = b" if gap > 0.0 else "z = 0"
 
 
 def running_rows(loop: SecondLoop) -> list[tuple[str, ...]]:

@@ -56,6 +56,10 @@ class RunEffect(RunningEffect):
         """Whether this pair could have run so."""
         return True
 
+    def starts(self, usual: Conditions) -> tuple[int, ...]:
+        """Steps of its size from which to look for the best."""
+        return (0,)
+
     @abstractmethod
     def applied(self, conditions: Conditions, size: float) -> Conditions:
         """The conditions with an effect of a size, as it is searched for."""

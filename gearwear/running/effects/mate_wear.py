@@ -24,9 +24,9 @@ class MateWear(RunEffect):
     doubt: ClassVar[float] = 0.7
 
     def applied(self, conditions: Conditions, size: float) -> Conditions:
-        # The gap that both wear off is larger by what the mate takes of it, so that the two sizes can be searched for apart.
-        shown = conditions.misalignment / (1.0 + conditions.mate_rate)
-        return replace(conditions, mate_rate=size, misalignment=shown * (1.0 + size))
+        # The gap that is searched for is larger by what the mate takes of it, so that the two sizes can be searched for apart.
+        shown = (conditions.misalignment - conditions.stated) / (1.0 + conditions.mate_rate)
+        return replace(conditions, mate_rate=size, misalignment=conditions.stated + shown * (1.0 + size))
 
     def reported(self, conditions: Conditions) -> float:
         return conditions.mate_rate

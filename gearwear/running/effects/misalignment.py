@@ -14,6 +14,8 @@ from gearwear.running.effects.base import RunEffect
 class Misalignment(RunEffect):
     """A gap f (z / b − ½) in the plane of action before the load closes it; + opens towards z = b on the worn flanks.
 
+    Its size is what there is beside the gap that the design states; reported is the whole.
+
     Notes
     -----
     The worn flanks tell how far they stood askew to their mates, never why: a bent shaft, a housing bored askew and a helix slope of either gear as
@@ -31,9 +33,13 @@ class Misalignment(RunEffect):
     least: ClassVar[float] = -0.3
     most: ClassVar[float] = 0.3
 
+    def starts(self, usual: Conditions) -> tuple[int, ...]:
+        # From flanks that carry at the wrong end, no step makes it better: the likeliest is no wear at all.
+        return tuple({0, round(-usual.stated / self.step)})
+
     def applied(self, conditions: Conditions, size: float) -> Conditions:
         # What this gear's flanks wear off is what shows; a mate that wears takes its part of the gap.
-        return replace(conditions, misalignment=size * (1.0 + conditions.mate_rate))
+        return replace(conditions, misalignment=conditions.stated + size * (1.0 + conditions.mate_rate))
 
     def reported(self, conditions: Conditions) -> float:
         return conditions.misalignment
