@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,8 +20,11 @@ from gearwear.arrays import Floats
 from gearwear.brep.curves import DEGREE
 from gearwear.brep.outline import SHORTEST_EDGE, Edge
 from gearwear.brep.parallel import Parallels, UsedUp
+from gearwear.brep.paths import drawn_turn, flank_paths
 from gearwear.brep.screw import side_turn
 from gearwear.design.gear import Gear
+from gearwear.design.modification import FlankModification
+from gearwear.design.side import Side
 from gearwear.design.twist import Segment, segments
 from gearwear.errors import InputError
 
@@ -34,6 +37,8 @@ ALONG = (4, 6, 8, 10, 13, 17, 22, 28, 36)
 HALVINGS = 8
 CHECKS = np.array([0.0, 0.21, 0.5, 0.83, 1.0])
 """Shares of an edge at which the points upwards are judged."""
+MOST_BEND = 0.02
+"""rad; a flank that is modified at its form circle by more is bent there as no end can follow, if it cannot be drawn."""
 LIMIT_ROUNDS = 30
 """Bisections to the size that would have fitted."""
 
@@ -124,11 +129,26 @@ def end_bands(gear: Gear, edges: tuple[Edge, ...]) -> tuple[list[EndBand], list[
         try:
             end.check(size)
             bands.append(end.bands())
-        except UsedUp as edge:
+        except (UsedUp, _NotDrawn) as edge:
+            bend = max(_bend_at_form(gear, side) for side in Side)
+            if bend > MOST_BEND and (isinstance(edge, _NotDrawn) or str(edge) == "flank"):
+                raise InputError(
+                    f"{where} cannot be drawn where the flank as modified leaves its fillet, next to the base circle, with a bend"
+                    f" of {math.degrees(bend):.2g}°; sharp ends, or nothing modified at the form circle, would be right"
+                ) from None
+            if isinstance(edge, _NotDrawn):
+                raise InputError(f"{where} its faces cannot be drawn; a smaller one would be right") from None
             raise InputError(f"{where} leaves no {edge} on the end face; below {end.limit(size):.4g} mm it would") from None
-        except _NotDrawn:
-            raise InputError(f"{where} its faces cannot be drawn; a smaller one would be right") from None
     return bands[0][::-1], bands[1]
+
+
+def _bend_at_form(gear: Gear, side: Side) -> float:
+    """By how much what is drawn bends a flank at the form circle, rad: a slope δ′ of the deviation over its length of roll by about δ′ r_b / L."""
+    plain = Gear.from_spec(replace(gear.spec, left=FlankModification(), right=FlankModification()))
+    normals = [flank_paths(one, side)[0].normals(np.array([0.0]))[0] for one in (gear, plain)]
+    turned = drawn_turn(gear, side, gear.form_roll)
+    now, as_plain = (math.atan2(y, x) for x, y in normals)
+    return abs(math.remainder(now - as_plain - turned, 2.0 * math.pi))
 
 
 class _NotDrawn(Exception):

@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 from build123d import GeomType, Solid, import_step
 
+from gearwear.brep.ends import end_bands
+from gearwear.brep.outline import tooth_edges
 from gearwear.brep.solid import gear_solid
 from gearwear.brep.step import write_step
 from gearwear.design import Gear, GearSpec
 from gearwear.design.modification import FlankModification
+from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, locate
 from gearwear.errors import InputError
 from tests.brep.measuring import closed, face_points, tooth_faces, volume
@@ -164,6 +167,25 @@ def test_end_faces_are_planes_and_tips_circles(made):
 def test_what_does_not_fit_is_refused_by_name(changed, words):
     with pytest.raises(InputError, match=words):
         gear_solid(Gear.from_spec(replace(GearSpec("pinion", 12, 6.35, 15.0), **changed)))
+
+
+@pytest.mark.parametrize(
+    ("how", "amount"),
+    [("profile_slope", 0.01), ("profile_slope", -0.01), ("profile_crowning", 0.01), ("root_relief", 0.02)],
+)
+def test_flanks_bent_where_they_leave_the_base_circle_are_refused_with_what_would_be_right(how, amount):
+    """Of 17 teeth the involute begins at L = 0.25 mm: a slope δ′ over L is a bend of δ′ r_b / L, to first order."""
+    more = {"root_relief_length": 3.0} if how == "root_relief" else {}
+    flank = FlankModification(**{how: amount}, **more)
+    gear = Gear.from_spec(GearSpec("pinion", 17, 3.0, 20.0, end_chamfer=0.2, left=flank, right=flank))
+    with pytest.raises(InputError, match=r"end_chamfer = 0\.2 mm: cannot be drawn .* sharp ends, or") as caught:
+        end_bands(gear, tooth_edges(gear))
+    told = float(str(caught.value).split("bend of ")[1].split("°")[0])
+    ends = np.array([0.0, 1e-6]) + gear.form_roll
+    slope = float(np.diff(gear.drawn(Side.LEFT).offset(ends, 10.0))[0]) / 1e-6
+    rise = slope * gear.base_radius / gear.form_roll
+    assert told == pytest.approx(math.degrees(math.atan(abs(rise))), rel=0.06)  # told to two digits
+    assert gear_solid(Gear.from_spec(replace(gear.spec, end_chamfer=0.0))).is_valid
 
 
 def test_what_would_fit_is_right():
