@@ -76,7 +76,7 @@ def fit(rows: Sequence[Row], module: float, free: tuple[int, ...], scale_doubt: 
 
 def shift_std(rows: Sequence[Row], module: float) -> float:
     """Standard deviation of the profile shift beside thinning and shortening of the usual size, in modules."""
-    columns = np.array([row[1][:3] for row in rows]) / np.array([row[2] for row in rows])[:, None]
+    columns = np.array([np.array(row[1][:3]) / row[2] for row in rows]).reshape(-1, 3)  # of no dimension too
     prior = np.diag(np.array([SHIFT_WIDTH, THINNING_WIDTH * module, SHORTENING_WIDTH]) ** -2.0)
     return math.sqrt(float(np.linalg.inv(columns.T @ columns + prior)[SHIFT, SHIFT]))
 

@@ -87,6 +87,13 @@ def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
     assert "mm over the tips is unusual: --units" in printed(capsys, file)
 
 
+def test_a_module_alone_is_a_gear_as_standard_proportions_have_it(capsys, tmp_path):
+    file = tmp_path / "gear.toml"
+    file.write_text(printed(capsys, "--teeth", 12, "--module", 6.35))
+    gear = read_design(file).gears["gear"]
+    assert gear.tip_radius == pytest.approx(0.5 * 6.35 * (12 + 2)) and gear.root_radius == pytest.approx(0.5 * 6.35 * (12 - 2.5))
+
+
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [
