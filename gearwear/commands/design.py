@@ -101,10 +101,9 @@ def _write(file: Path, text: str) -> None:
 
     try:
         write_file(file, text)
-    except OSError as error:
-        raise InputError(
-            f"--out {file}: cannot be written to ({error.strerror or error}); the path of a file is needed"
-        ) from None
+    except (OSError, ValueError) as error:  # the latter of a NUL in its name
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"--out {file}: cannot be written to ({why}); the path of a file is needed") from None
 
 
 def _angle(arguments: Namespace) -> float | None:

@@ -158,9 +158,12 @@ def read_manifest(path: Path) -> list[ManifestRow]:
 def _text(path: Path) -> str:
     data = read_small(path, NEEDS, MOST_BYTES, usual="")
     try:
-        return data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
+        text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
+        text = "\0"
+    if "\0" in text:  # nor has a file's name any
         raise InputError(f"{path}: is not text in UTF-8, which spreadsheets call CSV UTF-8; {NEEDS} is needed") from None
+    return text
 
 
 def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, list[str]]]:

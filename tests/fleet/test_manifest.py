@@ -101,5 +101,7 @@ def test_no_table_at_all(tmp_path):
         with pytest.raises(InputError, match=said):
             read_manifest(path)
     (tmp_path / "scan.ply").write_bytes(b"ply\xff\xfe\x00")
-    with pytest.raises(InputError, match="is not text"):
-        read_manifest(tmp_path / "scan.ply")
+    (tmp_path / "nul.csv").write_text("gear_id,design,scans\nG,a\0b.toml,s.ply\n")
+    for name in ("scan.ply", "nul.csv"):
+        with pytest.raises(InputError, match="is not text"):
+            read_manifest(tmp_path / name)

@@ -50,6 +50,12 @@ def test_a_file_in_the_way_is_named(tmp_path):
     assert (tmp_path / "out").read_text() == "a file"
 
 
+def test_a_name_that_no_folder_has_is_refused_before_any_work(tmp_path):
+    with pytest.raises(InputError, match="no folder has a NUL in its name"), output_folder(tmp_path / "a\0b" / "out"):
+        raise AssertionError
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_an_input_error_inside_passes_through(tmp_path):
     with pytest.raises(InputError, match="what was wrong"), output_folder(tmp_path / "out"):
         raise InputError("what was wrong")

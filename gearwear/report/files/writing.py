@@ -30,6 +30,8 @@ def check_folder(out: Path) -> None:
     InputError
         If it is a file, or lies where nothing can be made.
     """
+    if "\0" in str(out):  # of no file that there is, and so no OSError
+        raise InputError(f"{out}: no folder has a NUL in its name; one without would be right")
     try:
         if out.exists() and not out.is_dir():
             raise InputError(f"{out}: is a file; a folder is needed")
