@@ -13,6 +13,7 @@ covariance is diagonal, so that surface, likelihood and posterior are closed for
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from scipy import ndimage
@@ -141,29 +142,29 @@ def smooth_surface(
     # up, must not change what scatters how far.
     first = int(np.argmax(depth.sum(axis=(1, 2, 3))))
     way = 1 if depth[:, 0].sum() >= depth[:, 1].sum() else -1
-    for number, (part, place) in enumerate(
-        (
-            (slice(0, side_maps.fillet), np.arange(float(side_maps.fillet))),
-            (slice(side_maps.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
-        )
-    ):
-        modes = _Modes.of(grid.rows, place, white, covariance)
-        for half in range(2):
-            mask, values = wear.mask[:, half, :, part], measured[:, half, :, part]
-            teeth = np.flatnonzero(mask.any(axis=(1, 2)))
-            stiffnesses = {tooth: modes.stiffness(modes.taken(values[tooth])) for tooth in teeth}
-            usual = np.median(list(stiffnesses.values()), axis=0) if stiffnesses else np.zeros(2)
-            typical = np.median(values[teeth], axis=(0, 1)) if len(teeth) else np.zeros(len(place))
-            for tooth in teeth:
-                random = np.random.default_rng((0, number, half if way > 0 else 1 - half, way * int(tooth - first) % len(depth)))
-                for where, flank, stiffness in _pieces(modes, values[tooth], stiffnesses[tooth], usual, typical):
-                    worn, kept = where & mask[tooth], modes.kept(stiffness)
-                    surface = modes.surface(kept * modes.taken(flank))
-                    depth[tooth, half, :, part][worn] = surface[worn]
-                    spread = np.sqrt(kept * modes.noise)  # the posterior's variance: noise · prior / (noise + prior)
-                    for draw in drawn:
-                        other = surface + modes.surface(spread * random.normal(size=spread.shape))[::way]
-                        draw[tooth, half, :, part][worn] = other[worn]
+    parts = (
+        (slice(0, side_maps.fillet), np.arange(float(side_maps.fillet))),
+        (slice(side_maps.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
+    )
+    zones = [rows for rows, _ in grid.zones]  # the halves of a double helical gear know nothing of each other
+    for (zone, rows), (number, (part, place)), half in product(enumerate(zones), enumerate(parts), range(2)):
+        modes = _Modes.of(rows.stop - rows.start, place, white, covariance)
+        mask, values = wear.mask[:, half, rows, part], measured[:, half, rows, part]
+        teeth = np.flatnonzero(mask.any(axis=(1, 2)))
+        stiffnesses = {tooth: modes.stiffness(modes.taken(values[tooth])) for tooth in teeth}
+        usual = np.median(list(stiffnesses.values()), axis=0) if stiffnesses else np.zeros(2)
+        typical = np.median(values[teeth], axis=(0, 1)) if len(teeth) else np.zeros(len(place))
+        counted = (zone, number, half) if way > 0 else (len(zones) - 1 - zone, number, 1 - half)
+        for tooth in teeth:
+            random = np.random.default_rng((*counted, way * int(tooth - first) % len(depth)))
+            for where, flank, stiffness in _pieces(modes, values[tooth], stiffnesses[tooth], usual, typical):
+                worn, kept = where & mask[tooth], modes.kept(stiffness)
+                surface = modes.surface(kept * modes.taken(flank))
+                depth[tooth, half, rows, part][worn] = surface[worn]
+                spread = np.sqrt(kept * modes.noise)  # the posterior's variance: noise · prior / (noise + prior)
+                for draw in drawn:
+                    other = surface + modes.surface(spread * random.normal(size=spread.shape))[::way]
+                    draw[tooth, half, rows, part][worn] = other[worn]
     return WornSurface(depth, drawn)
 
 

@@ -12,6 +12,9 @@ from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.placing.side_maps import make_side_maps
 from gearwear.wear.regions import Wear
 from gearwear.wear.smooth import second_differences, smooth_surface
+from tests.synthetic.double_helical import Double
+from tests.synthetic.helical import Helical
+from tests.synthetic.test_double_helical import designed as designed_double
 
 NOISE, COUNT = 0.010, 4.0
 
@@ -106,6 +109,21 @@ def test_draws_scatter_as_far_as_the_surface_is_off(pinion):
         square.append(np.mean(((found.depth - flanks.true)[worn] / std) ** 2))
     assert np.sqrt(np.mean(square)) == pytest.approx(1.0, abs=0.2)
     np.testing.assert_allclose(found.draws.mean(axis=0)[worn], found.depth[worn], atol=5.0 * std.max() / np.sqrt(60))
+
+
+def test_what_one_half_of_a_double_helical_gear_lost_says_nothing_of_the_other():
+    """The lower half's surface is the same to the last digit whatever the upper half lost, and no less smooth than a gear of that face."""
+    gear, lower = designed_double(Double(Helical(teeth=17, helix=24.0, width=11.0), gap=6.0)), []
+    for deep in (0.0, 0.1):
+        flanks = Flanks.of(gear, lambda tooth, row, inverse, deep=deep: 0.02 + deep * (row > 33), seed=1)
+        rows = flanks.grid.zones[0][0]
+        flanks.wear.mask[:, :, ~flanks.grid.toothed] = False
+        assert flanks.grid.zones[1][0].start > 33 > rows.stop
+        lower.append(flanks.smooth(draws=1))
+    for one, other in zip(*((found.depth, found.draws) for found in lower), strict=True):
+        np.testing.assert_array_equal(one[..., rows, :], other[..., rows, :])
+    error = (lower[-1].depth - flanks.true)[:, 0, rows, flanks.grid.fillet :]
+    assert np.sqrt(np.mean(error**2)) < NOISE / np.sqrt(COUNT) / 3.0
 
 
 def errors_about_a_patch(pinion, deep, rows):
