@@ -146,7 +146,9 @@ def _depth(region: Json, scope: str) -> Quantity:
 def _thickness(report: Json) -> Iterator[Quantity]:
     teeth = [tooth for tooth in report.get("thickness") or [] if math.isfinite(_number(tooth.get("loss_max_mm")))]
     design: Json = report.get("design") or {}
-    arc = _number(design.get("reference_radius_mm")) / _number(design.get("base_radius_mm"))  # of a loss along the normal
+    radius = design.get("thickness_radius_mm", design.get("reference_radius_mm"))  # reports of older versions have none
+    lever = _number(design.get("base_radius_mm")) * math.cos(math.radians(float(design.get("base_helix_angle_deg", 0.0))))
+    arc = _number(radius) / lever  # of a loss along the normal
     open_ = [arc * far if far > 0.0 else 0.0 for far in _even_open(report)]
     losses = [
         Quantity(

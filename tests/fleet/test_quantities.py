@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
+from gearwear.design import Gear, GearSpec
 from gearwear.fleet.conformity import Conformity, conformity
 from gearwear.fleet.quantities import GEAR, TOOTH, quantities
 from tests.fleet.fleets import report
@@ -80,6 +82,20 @@ def test_what_is_open_of_the_volume_is_open_of_the_thickness():
     assert (loss.low, loss.high) == (pytest.approx(0.07 - 0.02 / 0.9), pytest.approx(0.07 + 0.05 / 0.9))
     narrow = rows(open_report(0.0, 0.0))["thickness_loss_mm"]
     assert math.isnan(narrow.low) and math.isnan(narrow.high)
+
+
+def test_open_thickness_is_that_where_it_is_measured():
+    """Arc for each mm along the normal: r / (r_b cos β_b), of helical teeth and where the reference circle lies off the involute."""
+    spec = GearSpec("gear", 20, 2.0, 10.0, helix_angle=math.radians(25.0))
+    for gear in (Gear.from_spec(spec), Gear.from_spec(replace(spec, profile_shift=1.2))):
+        given = open_report(20.0, 50.0, loss=(0.07, 0.004))
+        given["design"] |= {
+            "base_radius_mm": gear.base_radius, "reference_radius_mm": gear.reference_radius,
+            "thickness_radius_mm": gear.thickness_radius, "base_helix_angle_deg": math.degrees(gear.base_helix_angle),
+        }  # fmt: skip
+        loss = rows(given)["thickness_loss_mm"]
+        assert loss.low == pytest.approx(0.07 - 0.02 * gear.arc_per_depth)
+        assert loss.high == pytest.approx(0.07 + 0.05 * gear.arc_per_depth)
 
 
 def test_none_seen_is_as_deep_as_the_volume_leaves_open():

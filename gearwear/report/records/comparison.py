@@ -134,6 +134,7 @@ def _design(results: Results) -> Json:
         "tip_radius_mm": gear.tip_radius,
         "root_radius_mm": gear.root_radius,
         "form_radius_mm": gear.form_radius,
+        "thickness_radius_mm": gear.thickness_radius,
         "tooth_thickness_mm": gear.tooth_thickness,
         "normal_tooth_thickness_mm": gear.normal_tooth_thickness,
         "undercut": gear.undercut,
