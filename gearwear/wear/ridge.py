@@ -103,7 +103,7 @@ def worn_level(sheets: SideMaps, grid: CellGrid, loop: Loop, side: Side, highest
     contact begins no drawing of one gear tells: columns nearer the root than the deepest below the pitch point, and the first, are left out. What the squares
     gain by h, over what is left of them (and no less than the square of how well the level as made is known), is Student's t².
     """
-    above = above_made(sheets, side)
+    above = above_made(sheets, side)[grid.toothed]
     profile, often = strip_means(above, 0)
     std = loop.as_made_std[side.index]
     still = grid.flank_column(loop.context.pitch_roll)

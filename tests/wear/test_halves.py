@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -9,8 +11,10 @@ import gearwear as gw
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.side_maps import make_side_maps
 from gearwear.wear.own_level import at_own_level
 from gearwear.wear.regions import Wear, find_wear
+from gearwear.wear.ridge import worn_level
 from tests.placing.cells import every_cell, flanks_of, with_flanks
 from tests.synthetic.double_helical import Double, double_scan
 from tests.synthetic.helical import Helical, scan
@@ -36,13 +40,29 @@ def test_as_little_shows_on_two_halves_as_on_one_face_as_wide():
     assert np.median(deep_on_halves) == pytest.approx(np.median(deep), rel=0.15)
 
 
-def in_halves() -> Cells:
+def in_halves(size: float = 1.2) -> Cells:
     """Cells of the double helical gear, none in its groove."""
-    cells = every_cell(designed_double(TWO), 1.2)
+    cells = every_cell(designed_double(TWO), size)
     assert cells.grid.groove_rows > 0
     sides = np.zeros(cells.grid.sides(cells.count).shape, dtype=bool)
     sides[:, :, ~cells.grid.toothed] = True
     return cells.without(cells.grid.on_cells(sides))
+
+
+def test_a_profile_seen_on_most_of_both_halves_is_seen():
+    """Of 60 % of the rows with teeth, which are less than half of those of the whole face: the level asked of a worn side has its profile."""
+    cells = in_halves(0.4)
+    grid, flank = cells.grid, flanks_of(cells)
+    flank[:, 0] += 0.030 + 0.0003 * np.random.default_rng(2).standard_normal(flank[:, 0].shape)
+    pitch = SimpleNamespace(pitch_roll=grid.gear.reference_roll, sliding=lambda roll: 1.0 - grid.gear.reference_roll / roll)
+    as_made = SimpleNamespace(as_made_std=(0.0003, 0.0003), made=np.zeros((1, 1)), context=pitch)
+    sides, rows = np.zeros(grid.sides(cells.count).shape, dtype=bool), np.flatnonzero(grid.toothed)
+    unseen = rows[np.arange(len(rows)) % 5 < 2]
+    assert 0.5 * len(rows) < len(rows) - len(unseen) < 0.5 * grid.rows
+    sides[:, 0, unseen] = True
+    sheets = make_side_maps(with_flanks(cells, flank).without(grid.on_cells(sides)))
+    # Limits of an even level, where no profile would leave it open down to 0.
+    assert 0.9 * 0.030 < worn_level(sheets, grid, as_made, Side.LEFT, 0.030).low <= 0.030
 
 
 def toothed_area(grid: CellGrid) -> float:
