@@ -332,7 +332,7 @@ MUTATIONS = [
         ("running/other_side.py", "SURE_STDS = 3.0", "SURE_STDS = 2.0", "running/test_thresholds.py"),
         ("running/other_side.py", "LEAST_SHARE = 0.05", "LEAST_SHARE = 0.0", "running/test_thresholds.py"),
         ("running/forecast.py", "MOST_CYCLES_RATIO = 3.0", "MOST_CYCLES_RATIO = 4.0", "running/test_forecast.py"),
-        ("running/forecast.py", "gap / (1.0 + rate)", "gap", "running/test_forecast.py"),
+        ("running/forecast.py", "whole / (1.0 + second.conditions.mate_rate)", "whole", "running/test_forecast.py"),
         ("wear_law/running.py", "MODEL_SHARE = 0.10", "MODEL_SHARE = 0.05", "wear_law/test_running.py"),
         ("wear_law/running.py", "LEAST_MATE_SHARE = 0.1", "LEAST_MATE_SHARE = 0.0", "wear_law/test_running.py"),
         ("wear_law/running.py", "tail = 0.5 * (1.0 - confidence)", "tail = 4.0 * (1.0 - confidence)", "wear_law/test_running.py"),

@@ -170,16 +170,16 @@ class OpenVolume:
         return down, up
 
     def depth_limits(self, region: WearRegion) -> tuple[float, float] | None:
-        """Within what limits the deepest place of a worn flank lies, mm, its own 95 % interval with them; None where no more is open.
+        """Within what limits the deepest place of a worn flank lies, mm, its own 95 % interval with them; None where no more than that is open.
 
         What its side may have been made like is known (`even_depth`), or is open of the volume: a hollow is up to twice as deep as on average.
         """
         (down, up), even = self.evenly, self.even_depth(region.side)
-        below = even if even > 0.0 else HOLLOW * down
-        if below <= 0.0 and up <= 0.0:
-            return None
+        below, above = even if even > 0.0 else HOLLOW * down, HOLLOW * up
         own = NORMAL_95 * region.max_depth_std if math.isfinite(region.max_depth_std) else 0.0
-        return max(region.max_depth - below - own, 0.0), region.max_depth + HOLLOW * up + own
+        if below <= own and above <= own:
+            return None
+        return max(region.max_depth - below - own, 0.0), region.max_depth + above + own
 
     @property
     def _side_area(self) -> float:
