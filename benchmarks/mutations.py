@@ -56,6 +56,7 @@ MUTATIONS = [
         ("diagnose/active_face.py", "misfit[fitted[:, -1] <= 0.0] = math.inf", "pass", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "> sure or not", "> -100.0 or not", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "if not any(rows.stretch(one) for rows in elsewhere)", "if elsewhere", "diagnose/core/test_active_face.py"),
+        ("diagnose/active_face.py", "rules().active_face * self.count", "margin", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "<= rules().blank_flanks", "<= 1.0", "diagnose/core/test_active_face.py"),
         ("diagnose/loop.py", "worn &= ~face.margins(fit.cells)", "pass", "diagnose/core/test_active_face.py"),
         ("diagnose/loop.py", "always |= {FACE_LEVEL}", "pass", "diagnose/core/test_active_face.py"),

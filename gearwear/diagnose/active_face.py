@@ -194,7 +194,7 @@ class _Rows:
         """Rows in which ledges may lie, (k,) each: below and above a stretch, NONE and `count` where there is none; beside them so many rows that they show."""
         margin, seen = rules().margin_rows, self.seen.tolist()
         first, last = (end.ravel() for end in np.meshgrid([NONE, *seen[margin:]], [*seen[:-margin], self.count], indexing="ij"))
-        some = (last - first > margin) & ((first >= 0) | (last < self.count))
+        some = (last - first > rules().active_face * self.count) & ((first >= 0) | (last < self.count))
         return first[some], last[some]
 
     def _beside(self, smooth: Floats, first: Ints, last: Ints) -> tuple[Floats, Floats]:

@@ -288,6 +288,12 @@ class Rules:
         "standard deviation of the teeth's shares of a loss, in their mean, below which all teeth may have been cut so",
         off=0.0,
     )
+    active_face: float = rule(
+        1.0 / 3.0,
+        "of the face",
+        "derived",
+        "width of where the mate ran, at least: less is a groove, or an end that is rounded",
+    )
     margin_rows: int = rule(
         2,
         "rows",

@@ -73,6 +73,8 @@ def test_where_one_end_alone_shows_it_the_stretch_goes_on_to_the_other():
         pytest.param(lambda tooth, side, zeta: -0.015 * np.clip(10.0 * np.abs(zeta) - 4.0, 0.0, None), id="end relief"),
         pytest.param(lambda tooth, side, zeta: -0.015 * (np.abs(zeta) > 0.35), id="ends low"),
         pytest.param(lambda tooth, side, zeta: 0.004 * np.cos(9.0 * zeta + 1.0), id="a wave along the face"),
+        pytest.param(low_between(6.0, 8.5, 0.015), id="a groove"),
+        pytest.param(low_between(-1.0, 2.0, 0.050), id="an end low"),
         pytest.param(low_between(2.6, 12.1, 0.015, teeth=0.6), id="on two teeth in three"),
         pytest.param(low_between(0.3, 14.7, 0.015), id="a burr at the ends"),
     ],
