@@ -23,6 +23,13 @@ STEPS = {0: "by chance", 2: "every second", 3: "every third", 4: "every fourth",
 MATES = 1.0 / 6.0
 """Share of the scans with sliding wear whose design has a mate: contact takes most of the time then."""
 
+AS_CUT = (
+    "pitch", "thickness_variation", "tooth_thickness", "profile_shift", "profile_slope", "profile_crowning", "helix_slope", "helix_crowning", "taper",
+    "twist", "eccentricity", "axis_offset_lateral",
+)  # fmt: skip
+"""What may be named of a gear that is cut in a class."""
+RELIEFS = ("tip_relief", "root_relief", "end_relief")
+
 
 @dataclass(frozen=True)
 class Family:
@@ -403,13 +410,9 @@ def _cut_and_worn(rng: Rng, points: int, best: int, cut: Callable[[Rng, draws.Fr
     if rng.random() < 0.5:
         del design["rack_tip_radius"]
     scanner = draws.scanner(rng, g, points)
-    there = (
-        "pitch", "thickness_variation", "tooth_thickness", "profile_shift", "profile_slope", "profile_crowning", "helix_slope", "helix_crowning", "taper",
-        "twist", "eccentricity", "axis_offset_lateral",
-    )  # fmt: skip
     return {
         "what": what, "part": Part(g, tools, cut(rng, f, quality), wear), "design": design, "scanner": scanner,
-        "may_name": (*there, *_also(scanner)), "near": ("tip_relief", "root_relief", "end_relief"), "outside": f"form errors of class {quality}",
+        "may_name": (*AS_CUT, *_also(scanner)), "near": RELIEFS, "outside": f"form errors of class {quality}",
     }  # fmt: skip
 
 
@@ -506,14 +509,10 @@ def _narrow_mate(rng: Rng, points: int) -> dict[str, Any]:
         wear.append(Within(own, low if low > 0.0 else -edge, f.width - high if high > 0.0 else f.width + edge, edge))
     made = draws.as_cut(rng, f, quality) if quality else ()
     scanner = draws.scanner(rng, g, points)
-    there = (
-        "pitch", "thickness_variation", "tooth_thickness", "profile_shift", "profile_slope", "profile_crowning", "helix_slope", "helix_crowning", "taper",
-        "twist", "eccentricity", "axis_offset_lateral",
-    )  # fmt: skip
     return {
         "what": f"{'both sides' if both else 'one side'}, ledges at {'both ends' if low > 0.0 < high else 'one end'}, {'even' if even else 'sliding'}",
         "part": Part(g, tools, tuple(made), tuple(wear)), "design": draws.design_of(g, tools[0]), "scanner": scanner,
-        "may_name": (*(there if quality else ()), *_also(scanner)), "near": ("tip_relief", "root_relief", "end_relief"),
+        "may_name": (*(AS_CUT if quality else ()), *_also(scanner)), "near": RELIEFS,
         "outside": f"form errors of class {quality}" if quality else "",
     }  # fmt: skip
 

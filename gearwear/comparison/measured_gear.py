@@ -26,6 +26,7 @@ from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FLANK, OTHER, SURFACE_NAMES, SurfacePoints
 from gearwear.design.twist import Toothing, drawn_height, refuse
+from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells
@@ -180,6 +181,11 @@ class MeasuredGear(Card):
         """Sides worn throughout and left out as datum."""
         datum = self.placed.registration.datum
         return sides_of(datum.worn_side) if self.loop is None else self.loop.worn_sides
+
+    @property
+    def faces(self) -> tuple[ActiveFace, ...]:
+        """Where the mate ran, of sides of which flanks stand beside it as they were made; none where no loop was closed."""
+        return () if self.loop is None else self.loop.context.faces
 
     @property
     def scale(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.quantity import NORMAL_95
@@ -16,7 +17,7 @@ HOLLOW = 2.0
 """How deep a hollow is in its mean depth."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class OpenVolume:
     """The wear of a scan and what else it may be.
 
@@ -35,7 +36,7 @@ class OpenVolume:
     undecided: tuple[tuple[float, float], ...]
     unworn_seen: bool = False
 
-    @property
+    @cached_property
     def limits(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, its own 95 % interval with them, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
         which sides are worn throughout, what each answer would be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 %
@@ -133,14 +134,14 @@ class OpenVolume:
     def thin_or_worn(self) -> float:
         """What the teeth would have lost were they worn evenly to where they are, and not cut thinner than drawn, mm³; 0 where that is within the
         volume's standard deviation, and where a scan of the gear unworn shows what was made so."""
-        if self.measured.loop is None or self.unworn_seen or self.measured.loop.context.faces:  # what no mate touched is as thin
+        if self.measured.loop is None or self.unworn_seen or self.measured.faces:  # what no mate touched is as thin
             return 0.0
         cells = self.measured.cells
         depth = self.measured.loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK)))
         lost = depth * len(Side) * self._side_area
         return lost if lost > self.found.volume_std else 0.0
 
-    @property
+    @cached_property
     def even_or_thin(self) -> float:
         """What of the volume the sides worn throughout have lost all over alike, mm³; 0 where that is within the volume's standard deviation, where
         the tolerance of the thickness is stated, and where a scan of the gear unworn shows what was made so."""
@@ -190,8 +191,7 @@ class OpenVolume:
 
 def level_open(measured: MeasuredGear) -> frozenset[Side]:
     """Sides worn throughout of which no flank shows beside where its mate ran how high it was made."""
-    faces = () if measured.loop is None else measured.loop.context.faces
-    return measured.worn_sides - {face.side for face in faces}
+    return measured.worn_sides - {face.side for face in measured.faces}
 
 
 def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:

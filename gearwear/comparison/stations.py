@@ -17,7 +17,7 @@ from gearwear.comparison.closing import measure
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import PutBack, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
-from gearwear.comparison.open_volume import even_loss
+from gearwear.comparison.open_volume import even_loss, level_open
 from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
@@ -224,11 +224,12 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells, or
     where what the loop found leaves none."""
     datum, loop = measured.placed.registration.datum, measured.loop
-    faces = () if loop is None else loop.context.faces
-    if datum.low and (before or (loop is not None and (faces or not _still_low(measured, loop)))):
+    if datum.low and (before or (loop is not None and (measured.faces or not _still_low(measured, loop)))):
         return _with_datum(measured, replace(datum, low=0.0))
     side = datum.worn_side
-    said = faces or (loop is not None and len(loop.worn_sides) == 2)  # the other side is no datum either: `worn_notes` says so
+    said = measured.faces or (
+        loop is not None and len(loop.worn_sides) == 2
+    )  # the other side is no datum either: `worn_notes` says so
     if side is None:
         return measured
     told = {region.tooth for region in wear.regions if region.side is side}
@@ -265,8 +266,8 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
     loop = measured.loop
     if loop is None:
         return ()
-    notes = _where_the_mate_ran(loop, measured.gear.face_width)
-    if len(loop.worn_sides - {face.side for face in loop.context.faces}) == 2:
+    notes = _where_the_mate_ran(measured)
+    if len(level_open(measured)) == 2:
         plain = [
             side for side in sorted(loop.worn_sides, reverse=True) if not any(region.side is side for region in wear.regions)
         ]
@@ -316,9 +317,9 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
     return tuple(notes)
 
 
-def _where_the_mate_ran(loop: Loop, width: float) -> list[str]:
+def _where_the_mate_ran(measured: MeasuredGear) -> list[str]:
     """What flanks beside where their mate ran tell, a sentence for each stretch."""
-    faces, notes = loop.context.faces, list[str]()
+    faces, width, notes = measured.faces, measured.gear.face_width, list[str]()
     for low, high in dict.fromkeys((round(face.low, 1), round(face.high, 1)) for face in faces):
         sides = [str(face.side) for face in faces if (round(face.low, 1), round(face.high, 1)) == (low, high)]
         ends = " and ".join(end for end, there in (("below", low > 0.0), ("above", high < round(width, 1))) if there)

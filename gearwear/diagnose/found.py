@@ -289,8 +289,7 @@ class Loop(Card):
 
 
 def account(
-    fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], fold: Ints, patterns: tuple[Pattern, ...], noise: float,
-    worn_sides: frozenset[Side],
+    fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], fold: Ints, patterns: tuple[Pattern, ...], noise: float
 ) -> Loop:  # fmt: skip
     """Order the effects by gain, and follow the error from step to step.
 
@@ -308,8 +307,6 @@ def account(
         What is unexplained.
     noise : float
         Scatter of points, mm.
-    worn_sides : frozenset of Side
-        Sides worn throughout, whose flanks were left out.
     """
     order = _by_gain(problem, model)
     order.sort(key=lambda i: model[i].effect.kind is not Kind.FORM)  # what the drawing leaves open first
@@ -378,7 +375,7 @@ def account(
         residual_after=fit.residual(model),
         use=fit.use,
         covariance=fit.covariance,
-        worn_sides=worn_sides,
+        worn_sides=problem.context.worn_sides,
         context=problem.context,
         tried=len(problem.dictionary.candidates),
         patterns=patterns,

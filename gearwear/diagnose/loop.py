@@ -69,11 +69,6 @@ class Searched:
     problem: Problem
     model: Model
 
-    @property
-    def worn(self) -> frozenset[Side]:
-        """Sides taken for worn throughout."""
-        return self.problem.context.worn_sides
-
 
 def close_loop(
     cells: Cells,
@@ -132,7 +127,7 @@ def close_loop(
     if _still_in(plain, low):
         apart = cells.grid.on_flanks(low)
         plain = searched_without(alone)
-    costs, ran = SideCosts({alone: 0.0}), frozenset(face.side for face in context.faces)
+    costs, ran = SideCosts({alone: 0.0}), context.ran
     if worn is None and len(ran) < len(Side):  # whether a side is worn throughout the others tell
         told = cells.grid.on_flanks(low)
         for face in context.faces:
@@ -257,12 +252,12 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
     if not context.fillets_told:
         fit = _with_fillets(fit, sound_cells(fit.cells, context.worn, faces=context.faces))
         problem = fit.problem(problem.unit, context, always)
-    loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
+    loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
     unsized = {effect.name for effect in loop.effects if not effect.is_sized} - always
     if unsized:  # with all that its ± holds it may be nothing: no cause
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, tuple(c for c in stood.model if c.name not in unsized), noise, known)
-        loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
+        loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
     loop = replace(loop, effects=tuple(effect.or_one_of(instead.get(effect.name, ())) for effect in loop.effects))
     # What all teeth share is known from the others, and no texture under the wear of one of them.
     return replace(loop, covariance=estimate_covariance(fit.cells, loop.left, loop.use, noise)) if loop.patterns else loop

@@ -180,9 +180,8 @@ class SideSurface:
             return np.nan, np.nan
         by_rows = (sparse.csr_array(along) @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
         least = np.full(DRAWS, np.inf)
-        for over, middles in zip(
-            by_rows, there, strict=True
-        ):  # row by row: all windows of all draws are larger than the rest of a comparison's work
+        # Row by row: all windows of all draws are larger than the rest of a comparison's work.
+        for over, middles in zip(by_rows, there, strict=True):
             if middles.any():
                 np.minimum(least, (across[middles] @ over).min(axis=0), out=least)
         least += self.level

@@ -85,27 +85,17 @@ def test_the_command_says_and_writes_it(tmp_path, capsys, monkeypatch):
     assert read == [traces]  # once: a file of a machine may be large
 
 
-def _law(text: str, tmp_path: Path) -> dict:
+def _meshed(design: Path, text: str, tmp_path: Path, *more: str) -> dict:
+    """What the command writes of traces."""
     (tmp_path / "t.csv").write_text(text)
     out = tmp_path / "out"
-    assert (
-        main(
-            [
-                str(gw.example()),
-                "--wear",
-                str(tmp_path / "t.csv"),
-                "--drive",
-                "left",
-                "--cycle",
-                "revolution",
-                "--quiet",
-                "--out",
-                str(out),
-            ]
-        )
-        == 0
-    )
-    return json.loads((out / "meshing.json").read_text())["wear_law"]
+    asked = [str(design), "--wear", str(tmp_path / "t.csv"), *more, "--cycle", "revolution", "--quiet", "--out", str(out)]
+    assert main(asked) == 0
+    return json.loads((out / "meshing.json").read_text())
+
+
+def _law(text: str, tmp_path: Path) -> dict:
+    return _meshed(gw.example(), text, tmp_path, "--drive", "left")["wear_law"]
 
 
 def test_flanks_nobody_measured_give_no_law(tmp_path):
@@ -180,24 +170,7 @@ def test_the_command_fits_the_flanks_of_a_ring_that_face_the_pinions(tmp_path):
             for foot in np.linspace(gear.tip_roll + 0.05, gear.form_roll - 0.05, 40):
                 depth = amount * abs(1.0 - 3.0 * (foot - line) / foot)
                 rows.append(f"gear,profile,{tooth},{side},{foot + 1e-3 * depth:.6f},7,{rng.normal(0.0, 0.1) - depth:.4f}")
-    (tmp_path / "t.csv").write_text("\n".join(rows) + "\n")
-    out = tmp_path / "out"
-    assert (
-        main(
-            [
-                str(tmp_path / "ring.toml"),
-                "--wear",
-                str(tmp_path / "t.csv"),
-                "--cycle",
-                "revolution",
-                "--quiet",
-                "--out",
-                str(out),
-            ]
-        )
-        == 0
-    )
-    told = json.loads((out / "meshing.json").read_text())
+    told = _meshed(tmp_path / "ring.toml", "\n".join(rows) + "\n", tmp_path)
     law = told["wear_law"]
     assert told["contact"]["drive_flank"] == "left" and law["flank"] == "right" and law["fitted"]
     found = law["terms"]["sliding"]["coefficient_um"]

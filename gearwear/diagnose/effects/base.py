@@ -105,7 +105,12 @@ class Context:
     @property
     def worn_sides(self) -> frozenset[Side]:
         """Sides worn throughout, with and without flanks beside where the mate ran."""
-        return self.worn | {face.side for face in self.faces}
+        return self.worn | self.ran
+
+    @property
+    def ran(self) -> frozenset[Side]:
+        """Sides that show where their mate ran."""
+        return frozenset(face.side for face in self.faces)
 
     @property
     def open_sides(self) -> frozenset[Side]:

@@ -357,10 +357,7 @@ def _wear(results: Results) -> Json:
         ],
         "evenly_um": {"below": 1e3 * below, "above": 1e3 * above},
         "burrs": [{"flanks": str(burr.side), "volume_mm3": value_std(burr.volume, burr.std)} for burr in wear.burrs],
-        "active_face": [
-            {"flanks": str(face.side), "low_mm": face.low, "high_mm": face.high}
-            for face in (() if results.loop is None else results.loop.context.faces)
-        ],
+        "active_face": [{"flanks": str(face.side), "low_mm": face.low, "high_mm": face.high} for face in results.measured.faces],
         "ridges": [
             {"flanks": str(ridge.side), "height_um": value_std(1e3 * ridge.height, 1e3 * ridge.std)} for ridge in wear.ridges
         ],
