@@ -20,6 +20,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
 from gearwear.design.tolerance import profile_form_tolerance
@@ -53,10 +54,13 @@ class SideCosts:
         A hypothesis that is not tenable is left out.
     alike : float
         Of no wear, where whatever the flanks were made with is the same on both sides.
+    uncommon : float
+        By how much a form such as both sides may have lost is less common among flanks of the gear's class than none.
     """
 
     by_sides: Mapping[frozenset[Side], float]
     alike: float = math.inf
+    uncommon: float = 0.0
 
     @property
     def chosen(self) -> frozenset[Side]:
@@ -68,7 +72,9 @@ class SideCosts:
 
     def beside(self, ran: frozenset[Side]) -> SideCosts:
         """Of the other sides alone, where flanks of some show where their mate ran."""
-        return SideCosts({worn: cost for worn, cost in self.by_sides.items() if not worn & ran}, self.alike) if ran else self
+        if not ran:
+            return self
+        return replace(self, by_sides={worn: cost for worn, cost in self.by_sides.items() if not worn & ran})
 
     @property
     def beyond_doubt(self) -> bool:
@@ -79,10 +85,14 @@ class SideCosts:
 
     @property
     def not_excluded(self) -> tuple[frozenset[Side], ...]:
-        """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one."""
+        """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one.
+
+        Both sides made with what both may have lost alike is no better told by how well it fits than their class makes such a form uncommon.
+        """
         taken = self.chosen
         limit = self.by_sides[taken] + rules().close
-        return tuple(worn for worn, cost in self.by_sides.items() if worn != taken and cost < limit)
+        beyond = dict.fromkeys([frozenset(Side)] if taken == NO_SIDE else [], self.uncommon)
+        return tuple(worn for worn, cost in self.by_sides.items() if worn != taken and cost - beyond.get(worn, 0.0) < limit)
 
 
 def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCosts:
@@ -122,11 +132,12 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
                 beside, paid = scan.beside(by_side[0][:, own]), _price(by_side[1][own])
                 answers.append(frozenset({side}))
                 tried.append(partial(beside.slid_cost, model, side, unworn, paid))
-    tenable = dict[frozenset[Side], float]()
-    for sides, cost in zip(answers, each(tried), strict=True):
-        if cost is not None:
-            tenable[sides] = min(cost, tenable.get(sides, math.inf))
-    return SideCosts({NO_SIDE: unworn} | tenable, made)
+    tenable = dict[frozenset[Side], _Worn]()
+    for sides, least in zip(answers, each(tried), strict=True):
+        if least is not None and (sides not in tenable or least.cost < tenable[sides].cost):
+            tenable[sides] = least
+    uncommon = tenable[frozenset(Side)].uncommon if frozenset(Side) in tenable else 0.0
+    return SideCosts({NO_SIDE: unworn} | {sides: least.cost for sides, least in tenable.items()}, made, uncommon)
 
 
 def _believed(cells: Cells, context: Context, noise: float) -> Bools:
@@ -145,6 +156,14 @@ class _Loss:
     cost: float
     loss: Floats
     uneven: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Worn:
+    """The least cost of wear on some sides, and how uncommon flanks made with the form of what they lost are, where both sides have lost it."""
+
+    cost: float
+    uncommon: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,11 +284,11 @@ class _Scan:
             chosen, rest = np.append(chosen, rest[best]), np.delete(rest, best)
         return chosen
 
-    def slid_cost(self, model: Model, side: Side, unworn: float, paid: float) -> float | None:
+    def slid_cost(self, model: Model, side: Side, unworn: float, paid: float) -> _Worn | None:
         """Of the best model beside wear on a side as sliding leaves it, with what is `paid` for a form of the other; None where it has none of that."""
         law, on = wear_columns(self.fit.cells, self.problem.context, frozenset({side}))
         losses = self.losses(model, frozenset({side}), law, on)
-        return min((self._or_as_cut(lost, side, lost.cost + paid, unworn) for lost in losses), default=None)
+        return _least([self._or_as_cut(lost, side, lost.cost + paid, unworn) for lost in losses])
 
     def _or_as_cut(self, lost: _Loss, side: Side, cost: float, unworn: float) -> float:
         """What a loss costs: no less than `unworn` where all teeth have it alike, and flanks of the gear's class may be cut with it, or no load leaves it."""
@@ -280,7 +299,13 @@ class _Scan:
         """Whether flanks of a class may be cut with the form of a loss."""
         return self._form(lost.loss, side) <= profile_form_tolerance(self.fit.cells.grid.gear.normal_module, flank_class)
 
-    def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> float | None:
+    def _uncommon(self, lost: _Loss) -> float:
+        """By how much, in cost, a form that both sides lost is less common among flanks of the gear's class than none: 95 % of them keep the tolerance."""
+        gear = self.fit.cells.grid.gear
+        tolerance = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
+        return (NORMAL_95 * min(self._form(lost.loss, side) for side in Side) / tolerance) ** 2
+
+    def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> _Worn | None:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
 
         A loss of no shape that wear has by itself, which all teeth have alike, costs no less than `unworn` where flanks of the gear's class may be cut
@@ -301,7 +326,8 @@ class _Scan:
             shapes.append((even, on))  # all over alike: a thinner tooth, but for where fillets stand
         losses = [lost for law, on in shapes for lost in self.losses(model, worn, law, on)]
         if len(worn) > 1:
-            return min((lost.cost for lost in losses), default=None)
+            both = min(losses, key=lambda lost: lost.cost, default=None)
+            return None if both is None else _Worn(both.cost, self._uncommon(both))
         (side,) = worn
         # As free as the profile that it may have been made with, but for what wear never does.
         free = any_wear_columns(cells, context, worn) if any_shape else []
@@ -312,7 +338,7 @@ class _Scan:
             # By chance alone cheaper than a form that ground flanks have.
             made = chance and not lost.uneven and self._within(lost, side, rules().ground_class)
             costs.append(max(lost.cost, unworn) if made else lost.cost)
-        return min(costs, default=None)
+        return _least(costs)
 
     def _on_flanks(self, side: Side) -> Ints:
         """The cells that a fit may use on the flanks of a side."""
@@ -442,6 +468,10 @@ class _Scan:
         """The search beside some columns of a law, which are in every fit as the pose is."""
         with_law = replace(wide, pose=np.concatenate([wide.pose, lost]))
         return Problem(with_law, gram, self.problem.unit, self.problem.context, self.problem.always)
+
+
+def _least(costs: list[float]) -> _Worn | None:
+    return _Worn(min(costs)) if costs else None
 
 
 def _price(columns: Floats) -> float:

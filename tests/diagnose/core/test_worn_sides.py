@@ -20,7 +20,7 @@ from gearwear.diagnose.found import _made_on, form_of_all
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.masks import not_stray
 from gearwear.diagnose.pattern import Pattern
-from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, _by_tooth, as_slid
+from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, _by_tooth, _Loss, _Scan, as_slid
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
 from tests.synthetic import AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SlidingWear, make_scan
@@ -203,6 +203,29 @@ def test_both_sides_are_worn_only_where_that_beats_a_form_of_both_by_more_than_c
     costs = SideCosts({NO_SIDE: 100.0, LEFT: 99.0, BOTH: 95.0}, alike)
     assert costs.chosen == worn
     assert costs.not_excluded == ((LEFT, BOTH) if worn == NO_SIDE else (NO_SIDE, LEFT))
+
+
+@pytest.mark.parametrize(("uncommon", "told"), [(0.0, ()), (2.9, ()), (3.1, (BOTH,))])
+def test_what_flanks_of_their_class_are_hardly_made_with_both_sides_may_have_lost(uncommon, told):
+    """It fits better by 12 that they were made so; where they hardly are, wear is not excluded, and of one side nothing is said by that."""
+    assert SideCosts({NO_SIDE: 100.0, BOTH: 112.0, LEFT: 112.0}, 100.0, uncommon).not_excluded == told
+    assert SideCosts({NO_SIDE: 112.0, BOTH: 112.0, LEFT: 100.0}, 112.0, uncommon).not_excluded == ()
+
+
+@pytest.mark.parametrize(("size", "squared"), [(0.0, 0.0), (1.0, 1.0), (2.0, 4.0)])
+def test_a_form_is_as_uncommon_as_its_square_in_that_of_which_five_in_a_hundred_flanks_have_more(size, squared):
+    """Minus twice the logarithm of a normal density falls with the square, and the side that has less of it counts."""
+    gear = Gear.from_spec(replace(PINION.spec, tolerance=replace(PINION.spec.tolerance, flank_class=5)))
+    cells = binned(())
+    cells = replace(cells, grid=replace(cells.grid, gear=gear))
+    points, edges = cells.points, cells.grid.roll_edges
+    flank = points.surface == FLANK
+    way = 2.0 * (np.nan_to_num(points.roll, nan=edges[0]) - edges[0]) / np.ptp(edges) - 1.0
+    # 1 − x² off its chord, as wide as the form tolerance of class 5: 0.55 m + 5 µm. A slope on top is no form.
+    hollow = 1e-3 * (0.55 * 6.35 + 5.0) * size * (1.0 - way**2)
+    loss = np.where(flank, -(hollow + 0.05 * way) * np.where(points.side == int(Side.LEFT), 1.0, 1.5), 0.0)
+    scan = _Scan(SimpleNamespace(cells=cells), None, flank & cells.seen)
+    assert scan._uncommon(_Loss(0.0, loss, False)) == pytest.approx(1.96**2 * squared, rel=0.2)
 
 
 @pytest.mark.long
