@@ -133,7 +133,7 @@ def gauge_page(studies: Sequence[GaugeStudy], scans: Mapping[tuple[str, str], Se
     for i, part in enumerate(dict.fromkeys(part for study in main for part in study.parts), 1):
         panels = []
         for study in main:
-            repeats = [scan for scan in scans[study.quantity, study.flank] if scan.part == part]
+            repeats = _found_on(part, scans[study.quantity, study.flank])
             if len(repeats) > 1:
                 mean = sum(repeat.value for repeat in repeats) / len(repeats)
                 svg = repeat_panel(repeats, study.operators, halves[study.quantity])
@@ -147,11 +147,16 @@ def gauge_page(studies: Sequence[GaugeStudy], scans: Mapping[tuple[str, str], Se
     )  # fmt: skip
 
 
+def _found_on(part: str, scans: Sequence[Repeat]) -> list[Repeat]:
+    """The scans of a part that the study can be of: where no wear was found there is no 0 to compare with."""
+    return [scan for scan in scans if scan.part == part and scan.found]
+
+
 def _half(study: GaugeStudy, scans: Sequence[Repeat]) -> float:
     """What half the height of a chart stands for: the largest distance from the mean of a part, with its 2 u."""
     reach = []
     for part in study.parts:
-        repeats = [scan for scan in scans if scan.part == part]
+        repeats = _found_on(part, scans)
         mean = sum(repeat.value for repeat in repeats) / len(repeats)
         reach += [abs(repeat.value - mean) + 2.0 * (repeat.std if repeat.std > 0.0 else 0.0) for repeat in repeats]
     return largest(reach)

@@ -90,18 +90,16 @@ def _estimate(name: str, scope: str, record: Json | None, factor: float = 1.0, *
 def _wear(report: Json) -> Iterator[Quantity]:
     wear: Json = report.get("wear") or {}
     regions, size = wear.get("regions") or [], "volume_mm3" if "volume_mm3" in wear else "area_mm2"
-    unit = size.rsplit("_", 1)[1]
     open_ = _even_open(report)
-    depth, patch = HIDDEN * 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get("detection_area_mm2"))
+    extent = "detection_area_mm2" if size == "volume_mm3" else "detection_length_mm"
+    depth, patch = HIDDEN * 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get(extent))
     if regions:
         yield from _estimate(f"wear_{size}", GEAR, wear.get(size))
         deepest = max(regions, key=lambda region: _number(region["max_depth_um"]))
         yield _depth(deepest, GEAR)
     elif size in wear:  # nothing was found: what might be there all the same
-        hidden = depth * patch if unit == "mm3" else math.nan
-        yield Quantity(
-            name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=float(np.fmax(hidden, _number(wear[size].get("high"))))
-        )
+        high = float(np.fmax(depth * patch, _number(wear[size].get("high"))))
+        yield Quantity(name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=high)
         yield Quantity(name="wear_depth_mm", scope=GEAR, value=0.0, low=0.0, high=max(depth, HIDDEN * open_[1]))
     yield from _estimate("lost_volume_mm3", GEAR, wear.get("lost_volume_mm3"))
     seen = {(region["tooth"], region["flank"]) for region in regions}

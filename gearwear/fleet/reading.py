@@ -66,7 +66,8 @@ def read_fleet(store: Store) -> StoredFleet:
     rows, states = store.listed(), store.states()
     done = [row.key for row in rows if states.get(row.key) is State.DONE]
     tables = store.tables(done)
-    scans = numbered_scans(read_tables(tables, PATTERN), read_tables(tables, MARK))
+    patterns = (row for row in read_tables(tables, PATTERN) if row["converged"])  # else teeth are nowhere, the first scan's too
+    scans = numbered_scans(patterns, read_tables(tables, MARK))
     teeth = tuple(tooth_rows(read_tables(tables, TOOTH), scans))
     return StoredFleet(tuple(rows), states, tuple(read_tables(tables, GEAR)), scans, teeth)
 
@@ -174,7 +175,7 @@ def gauge_studies(fleet: StoredFleet) -> tuple[list[GaugeStudy], dict[tuple[str,
             part = _part(number["gear_id"], _inspection(number, inspections))
             repeat = Repeat(
                 part, number["operator"], number["repeat"], number["value"], std, *beyond(number["value"], std, low, high),
-                found=std > 0.0 or not math.isfinite(high),
+                found=std > 0.0 or number["value"] != 0.0 or low != 0.0,
             )  # fmt: skip
             scans.setdefault((number["quantity"], number["flank"]), []).append(repeat)
     order = {name: i for i, name in enumerate(QUANTITIES)}

@@ -12,6 +12,8 @@ from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 
 from gearwear.fleet.gauge import Accord, Repeat, gauge_study, in_accord, scatter
+from gearwear.fleet.labels import shown
+from gearwear.fleet.pages import gauge_page
 from gearwear.fleet.reading import gauge_studies, read_fleet
 from gearwear.fleet.words import accord_words
 from tests.fleet.fleets import report, row, store_of
@@ -200,6 +202,34 @@ def test_nothing_found_comes_from_the_store_as_such(tmp_path):
     _, scans = gauge_studies(read_fleet(store))
     assert sorted(scan.found for scan in scans["wear_volume_mm3", ""]) == [False, True, True]
     assert all(scan.found for scan in scans["thickness_loss_mm", ""])
+
+
+@pytest.mark.parametrize("size", ["volume_mm3", "area_mm2"])
+def test_nothing_found_is_no_zero_of_the_page_nor_of_a_section(tmp_path, size):
+    """Two gears of 1 and 2, scanned twice, and once more without wear found; what may be there is two patches at the limit."""
+
+    def found(value):
+        wear = {
+            size: {"value": value, "std": 0.05},
+            "detection_limit_um": 20.0,
+            f"detection_{'area_mm2' if size == 'volume_mm3' else 'length_mm'}": 3.0,
+        }
+        region = {"tooth": 3, "flank": "left", size: wear[size], "max_depth_um": 50.0, "max_depth_std_um": 4.0}
+        return report() | {"wear": wear | {"regions": [region] if value else [], "flanks": []}}
+
+    given = [
+        (row(f"G{part}", None, 1e6, "A", str(i)), found(value))
+        for part in (1, 2) for i, value in enumerate((part - 0.1, part + 0.1, 0.0))
+    ]  # fmt: skip
+    fleet = read_fleet(store_of(tmp_path / "s", given))
+    studies, scans = gauge_studies(fleet)
+    (study,) = (one for one in studies if one.quantity == f"wear_{size}")
+    assert (study.repeats, study.left_out) == (2, 2)
+    assert study.variance.repeatability.std == pytest.approx(math.sqrt(2.0) * 0.1)
+    hidden = [number["high"] for number in fleet.numbers if number["quantity"] == f"wear_{size}" and number["value"] == 0.0]
+    assert hidden == [pytest.approx(2 * 0.02 * 3.0)] * 2
+    page = gauge_page([study], scans)
+    assert all(shown(study.quantity, mean, 0.05) in page for mean in (1.0, 2.0))
 
 
 def test_without_date_and_cycles_repeats_are_told_apart_or_none(tmp_path):

@@ -17,7 +17,7 @@ LAID = [(0, False), (6, False), (4, True)]
 """How each scan must be turned to go with the first."""
 
 
-def stored(folder, own: float, seed: int = 0, laid=LAID, marks=(None, None, None), days=DAYS):
+def stored(folder, own: float, seed: int = 0, laid=LAID, marks=(None, None, None), days=DAYS, settled=(True, True, True)):
     """Three inspections of one gear whose flanks differ by `own` times what a scan scatters; tooth 4 wears on its left flank."""
     rng = np.random.default_rng(seed)
     place, form = rng.normal(size=(TEETH, 2, 1, 1)), rng.normal(size=(TEETH, 2, 3, 3))
@@ -30,7 +30,7 @@ def stored(folder, own: float, seed: int = 0, laid=LAID, marks=(None, None, None
         # As it lay: the way back from `laid`.
         back = [TeethPattern(one.name, one.laid(turned if over else -turned, over)) for one in patterns]
         tooth = (turned - 3 if over else 3 - turned) % TEETH + 1
-        given = report(depth=(50.0 + 20.0 * i, 4.0))
+        given = report(depth=(50.0 + 20.0 * i, 4.0), converged=settled[i])
         given["wear"]["regions"][0] |= {"tooth": tooth, "flank": "right" if over else "left"}
         given["scan"] = {"teeth_patterns": [{"name": one.name, "values": one.values.tolist()} for one in back], "mark": marks[i]}
         scans.append((row("G1", day, 1e6 * (i + 1)), given))
@@ -57,6 +57,18 @@ def test_teeth_are_in_the_order_of_the_trend(tmp_path):
     assert [one["inspected"] for one in deep] == [None, *DAYS[1:]]
     points = trends(fleet)[0].trends["wear_depth_mm"].points
     assert [point.inspected for point in points] == [None, *DAYS[1:]]
+
+
+def test_teeth_are_numbered_by_the_first_scan_that_settled(tmp_path):
+    """One that lies nowhere has no teeth to number others by: the second scan's numbers count, turned back by its own 6."""
+    fleet = stored(tmp_path / "store", 3.0, settled=(False, True, True))
+    (first, second) = fleet.scans.values()
+    assert first.same.as_it_lay and first.same.probability == 1.0
+    assert (second.same.turned, second.same.flipped) == (4 - 6 + TEETH, True)
+    deep = [one for one in fleet.teeth if one["quantity"] == "wear_depth_mm" and one["value"] > 0.0]
+    assert [(one["tooth"], one["flank"], one["probability"]) for one in deep] == [
+        ((3 - 6) % TEETH + 1, "left", pytest.approx(1.0))
+    ] * 2
 
 
 def test_a_gear_without_marks_is_doubtful(tmp_path):
