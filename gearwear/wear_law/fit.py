@@ -15,6 +15,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
+from gearwear.design.given import check_choice
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.threads import on_one_thread
@@ -352,7 +353,7 @@ def fit_wear_law(
         Standard deviation of the (mean) depth, mm; or its covariance, mm². None: the same everywhere, of the size of what
         the teeth leave of their own fits or, for a single profile, of what the best model leaves.
     sharing : LoadSharing or None
-        The load sharing; None tries all that are of such gears.
+        The load sharing, or its word, of those that are of such gears (`LoadSharing.of`); None tries them all.
     correlation_length : float
         mm of roll over which errors of `depth` are alike (they decay as exp(−ΔL/ℓ)), where `std` is no covariance; 0 is
         independent. Take it from the scan: texture makes an interval far too narrow when it is left out.
@@ -369,7 +370,7 @@ def fit_wear_law(
     ------
     InputError
         If arrays do not match, too few points lie on the path of contact, a standard deviation is not positive, lengths
-        of roll do not rise, or the contact ratio is 2 or more.
+        of roll do not rise, the load sharing is none of such gears, or the contact ratio is 2 or more.
 
     Notes
     -----
@@ -418,7 +419,10 @@ def fit_wear_law(
         np.diff(roll) > 0.0
     ).all():
         raise InputError("wear law: standard deviations must be above 0 mm and lengths of roll must rise")
-    models = LoadSharing.of(gear) if sharing is None else (sharing,)
+    models = LoadSharing.of(gear)
+    if sharing is not None:
+        check_choice("sharing", sharing, models)
+        models = (LoadSharing(sharing),)
     # Equal arcs are equal steps of L²; the harmonic mean of such a stretch is its middle.
     edges = np.clip(roll[:, None] + np.array([-0.5, 0.5]) * stretch[:, None], path.start_pinion, path.end_pinion)
     bases = [law_over(gear, mate, centre_distance, edges, model) for model in models]

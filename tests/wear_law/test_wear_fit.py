@@ -338,3 +338,19 @@ def test_results_show_themselves_in_few_lines(pinion, wheel):
     assert "reached already" in repr(cycles_left(fits, 1e6, 0.001, "depth"))
     for shown in map(repr, (*fits, forecast, left)):
         assert len(shown.splitlines()) < 14 and "array(" not in shown and max(map(len, shown.splitlines())) < 200
+
+
+@pytest.mark.parametrize("sharing", [LoadSharing.NONE, LoadSharing.HALVES, LoadSharing.THIRDS])
+def test_load_sharing_by_its_word_is_that_load_sharing(pinion, wheel, sharing):
+    """Every word was fitted as thirds: A of a profile without sharing came out at twice what it is."""
+    depth = wear_per_cycle(pinion, wheel, C, ROLL, 1e-10, 100.0, sharing) * 1e6 + B
+    fit = fit_wear_law(pinion, wheel, C, ROLL, depth, np.full(90, 1e-4), sharing.value)[0]
+    assert fit.sharing is sharing
+    assert fit.coefficients == pytest.approx([0.01, B, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("word", ["thirds of it", LoadSharing.LINES, 1])
+def test_load_sharing_that_such_gears_do_not_have_is_refused(pinion, wheel, word):
+    """Contact lines of spur teeth do not lean: their length over no width was no number, and all of the wear an even loss."""
+    with pytest.raises(InputError, match=r"sharing = .*: one of none, halves, thirds would be right"):
+        fit_wear_law(pinion, wheel, C, ROLL, law(ROLL), np.full(90, 1e-4), word)
