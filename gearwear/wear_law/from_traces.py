@@ -50,7 +50,7 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
     -----
     Depths are means over the heights, at the foot L = √(r² − r_b²) + ι cos β_b · depth (ι: −1 on a ring), of the flanks measured. Their level is left free, by a shared error of `LEVEL_STD`: a
     uniform loss cannot be told from the zero of the machine, the sliding part can, as it vanishes at the pitch point. Their other errors are
-    the scatter between measured teeth, divided by the root of their number.
+    the scatter between measured teeth, divided by the root of their number; and where teeth wear unlike, the coefficients scatter with them.
     """
     gear = profiles.gear
     orientation = gear.orientation
@@ -68,11 +68,12 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
     carried = orientation * gear.base_helix_cosine
     flanks = np.array([np.interp(roll, reach + carried * depth, depth) for depth in lost])
     spread = flanks - flanks.mean(axis=1, keepdims=True)
-    pooled = float(spread.std(axis=0, ddof=1).mean()) if len(flanks) >= FEWEST else LEAST_STD
-    std = max(pooled / np.sqrt(len(flanks)), LEAST_STD)
+    many = len(flanks) >= FEWEST
+    pooled = math.sqrt(float(spread.var(axis=0, ddof=1).mean())) if many else LEAST_STD
+    std = max(pooled / math.sqrt(len(flanks)), LEAST_STD)
     errors = std**2 * np.eye(PLACES) + LEVEL_STD**2
     try:
-        fits = fit_wear_law(gear, mate, centre_distance, roll, flanks.mean(axis=0), errors)
+        fits = fit_wear_law(gear, mate, centre_distance, roll, flanks if many else flanks.mean(axis=0), errors)
     except InputError as error:
         return WearStudy(side=side, teeth=teeth, left_out=(), fits=(), why_not=str(error))
     return WearStudy(

@@ -27,15 +27,15 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(f"gearwear.report.files.meshing.{name}", lambda *given: None)
 
 
-def _write(file: Path, level: float, teeth: int = 5, noise: float = 0.2, a: float = A) -> Path:
-    """Left profiles of the pinion: A |K| missing, K = 1 − (T − L) / (2 L), at a zero of the machine's own."""
+def _write(file: Path, level: float, teeth: int = 5, noise: float = 0.2, a: float = A, unlike: float = 0.0) -> Path:
+    """Left profiles of the pinion: A |K| missing, K = 1 − (T − L) / (2 L), at a zero of the machine's own; from tooth to tooth by a share more."""
     rng = np.random.default_rng(8)
     gear = DESIGN.gears["pinion"]
     rows = ["part,kind,tooth,flank,roll_mm,z_mm,deviation_um"]
     for tooth in range(1, teeth + 1):
         zero = level + rng.normal(0.0, 3.0)
         for foot in np.linspace(max(gear.form_roll, 1.0) + 0.2, gear.tip_roll, 120):
-            depth = a * abs(1.0 - (LINE - foot) / (2.0 * foot))
+            depth = a * (1.0 + unlike * (tooth - 0.5 * (teeth + 1))) * abs(1.0 - (LINE - foot) / (2.0 * foot))
             rows.append(f"pinion,profile,{tooth},left,{foot - 1e-3 * depth:.5f},7.5,{zero - depth + rng.normal(0.0, noise):.4f}")
     file.write_text("\n".join(rows) + "\n")
     return file
@@ -62,6 +62,15 @@ def test_a_flank_nobody_measured_is_no_evidence(tmp_path):
         assert len(study.teeth) == teeth
         widths.append(study.fits[0].single_contact.sliding_std)
     assert widths[0] > 0.5 * widths[1] > 0.0
+
+
+def test_teeth_that_wore_unlike_make_the_amount_unsure(tmp_path):
+    """80 to 120 % of A on five teeth, which scatter by √2.5 tenths: the mean of the law is known to √0.5 tenths of it, and was said to be to 0.6 %."""
+    _, profiles = read_traces(_write(tmp_path / "t.csv", 0.0, unlike=0.1), DESIGN)
+    fit = study_traces(profiles, DESIGN.gears["gear"], DESIGN.centre_distance, gw.Side.LEFT).fits[0]
+    assert 1e3 * fit.coefficients[0] == pytest.approx(A, rel=0.02)
+    assert 1e3 * fit.coefficient_stds[0] == pytest.approx(0.1 * A / 2**0.5, rel=0.02)
+    assert 4.0 <= fit.freedom[0] < 5.0  # of five teeth, and what the scatter along each profile adds
 
 
 def test_the_command_says_and_writes_it(tmp_path, capsys, monkeypatch):
