@@ -5,12 +5,15 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from collections.abc import Generator
 from pathlib import Path
+from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the commands do, before numpy: sums in one order, the same bytes
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the workers and some sixty commands would each compile all of the package
 
 import pytest
+from _pytest.doctest import DoctestModule
 from hypothesis import settings
 
 from gearwear.design.gear import Gear
@@ -62,6 +65,45 @@ LONGEST = (
     "test_cad_scripts.py",
 )
 """Files of more than some 10 s, the long tests too, longest first: begun last, one of them would keep a processor busy while the others have no work left."""
+
+
+TOGETHER = (
+    {
+        "test_api.py", "comparison/test_accord.py", "comparison/test_views.py", "diagnose/core/test_smoothing.py", "report/test_figures.py",
+        "report/test_loaded_words.py", "report/test_page.py", "report/test_publishing.py", "report/test_schema.py", "report/test_summary.py",
+        "report/test_surfaces.py", "report/test_wear_law_words.py", "report/test_words.py",
+    },
+    {
+        "running/test_as_drawn.py", "running/test_forecast.py", "running/test_other_side.py", "running/test_search.py", "running/test_stated.py",
+        "running/test_thresholds.py",
+    },
+)  # fmt: skip
+"""Files that look at one costly result, the comparison of `tests.report.fake` or the runs of `tests.running.maps`: for one worker, which makes it once."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """As `--dist loadfile`, with the files of `TOGETHER` as one."""
+    from xdist.scheduler import LoadFileScheduling
+
+    if config.getvalue("dist") != "loadfile":
+        return None
+    place = {f"tests/{name}": str(number) for number, names in enumerate(TOGETHER) for name in names}
+    lost = [name for name in place if not (TESTS.parent / name).exists()]
+    assert not lost, f"TOGETHER of tests/conftest.py names files that are not there: {lost}"
+
+    class TogetherScheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file: str = super()._split_scope(nodeid)
+            return place.get(file, file)
+
+    return TogetherScheduling(config, log)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file() -> Generator[None, list[pytest.Collector], list[pytest.Collector]]:
+    """Doctests are those of the package: to look for one in every name that a test file holds took every worker a second."""
+    return [one for one in (yield) if not isinstance(one, DoctestModule)]
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
