@@ -25,6 +25,9 @@ MOST = 4
 TICKET = 2
 """Bytes of a call's number; a pipe holds more of them than there are calls."""
 
+THREADS = "GEARWEAR_THREADS"
+"""Environment variable; how many threads the loops of one call may have."""
+
 _allowed: ContextVar[bool] = ContextVar("allowed", default=False)
 
 
@@ -36,6 +39,17 @@ def idle_processors() -> Iterator[None]:
         yield
     finally:
         _allowed.reset(token)
+
+
+def threads() -> int:
+    """Threads for loops in which numpy releases the interpreter: what `THREADS` says, else one on each processor that the process may run on.
+
+    They wait for each other a quarter of their time: where all processors have work, as with the workers of a fleet, one does more.
+    """
+    told = os.environ.get(THREADS, "")
+    if told.isdecimal() and int(told) > 0:
+        return int(told)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _within_reach() -> int:

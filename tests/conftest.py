@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the commands do, before numpy: sums in one order, the same bytes
+if "PYTEST_XDIST_WORKER" in os.environ:
+    os.environ.setdefault("GEARWEAR_THREADS", "1")  # a worker has one processor
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the workers and some sixty commands would each compile all of the package
 
 import pytest

@@ -6,14 +6,20 @@ import multiprocessing
 import os
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import gearwear as gw
 from gearwear import processors
+from gearwear.design import surface
+from gearwear.design.profiles import nominal_profiles
 from gearwear.errors import InputError
+from gearwear.meshing import tooth_pair
+from gearwear.meshing.contact import mesh_contact
 from gearwear.processors import _within_reach, beside, each, idle_processors
 
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="helpers are forked on Linux alone")
@@ -160,3 +166,30 @@ def test_one_processor_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(processors, "sys", type("Mac", (), {"platform": "darwin"}))
     with idle_processors():
         assert set(pids(4)) == {os.getpid()}
+
+
+def threads_started(monkeypatch: pytest.MonkeyPatch, told: str) -> tuple[list[int], bytes]:
+    """How many threads a contact and a scan take where the environment says so, and the contact's curve."""
+    started = list[int]()
+
+    class Counted(ThreadPoolExecutor):
+        def __init__(self, number: int) -> None:
+            started.append(number)
+            super().__init__(number)
+
+    monkeypatch.setenv(processors.THREADS, told)
+    monkeypatch.setattr(tooth_pair, "ThreadPoolExecutor", Counted)
+    monkeypatch.setattr(surface, "ThreadPoolExecutor", Counted)
+    pair = gw.read_design(gw.example())
+    pinion, gear = (nominal_profiles(one, z=np.linspace(0.0, 15.0, 60)) for one in pair.gears.values())
+    surface.locate(np.full((surface.CHUNK * surface.WORTH_THREADS, 3), [38.0, 0.0, 7.0]), pinion.gear)
+    return started, mesh_contact(pinion, gear, pair.centre_distance, cycle="pitch").transmission_error.tobytes()
+
+
+def test_threads_are_as_many_as_is_said_and_one_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    one, three = (threads_started(monkeypatch, told) for told in ("1", "3"))
+    assert one[0] == [] and len(three[0]) > 1 and set(three[0]) == {3}
+    assert one[1] == three[1]
+    for nothing in ("", "0", "many", "-2"):
+        monkeypatch.setenv(processors.THREADS, nothing)
+        assert processors.threads() == len(os.sched_getaffinity(0))

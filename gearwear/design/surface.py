@@ -7,7 +7,6 @@ points; the exact plumb line, no triangles, no search) and `flank_points` (from 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
@@ -21,6 +20,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.root import fillet_table
 from gearwear.design.side import Side
 from gearwear.design.twist import hand_at, normal_lean, section_angle, segments, turn_at
+from gearwear.processors import threads
 
 FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
 """Surface codes; BORE is the outside of a ring too; OTHER is what is not measured (chamfer, rounding, keyway, hub, web, stray)."""
@@ -215,7 +215,7 @@ def deviations(points: Floats, gear: Gear, bands: Bands | None = None, workers: 
 def _by_chunks(n: int, work: Callable[[slice], None], workers: int | None) -> None:
     """Do the work for n points, chunk by chunk."""
     chunks = [slice(start, min(start + CHUNK, n)) for start in range(0, n, CHUNK)]
-    count = workers or os.cpu_count() or 1
+    count = workers or threads()
     if count == 1 or len(chunks) < WORTH_THREADS:
         for chunk in chunks:
             work(chunk)

@@ -16,6 +16,7 @@ from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.tables import needs
 from gearwear.fleet.task import Job, run
 from gearwear.memory import GB
+from gearwear.processors import THREADS
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -60,6 +61,7 @@ def local_workers(number: int, memory: float) -> Iterator[Client]:
                 LocalCluster(
                     n_workers=number,
                     threads_per_worker=1,
+                    env={THREADS: "1"},
                     processes=True,
                     memory_limit=int(memory),
                     scheduler_kwargs={"allowed_failures": 0},  # `outcomes` tries a scan whose worker died once more

@@ -11,7 +11,6 @@ difference that runs linearly between the given radii. A perfect pair is therefo
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -20,9 +19,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
+from gearwear.processors import threads
 
 Index = NDArray[np.intp]
 T = TypeVar("T")
@@ -193,8 +193,10 @@ class ToothPairs:
         advance = np.full((count, rows), -np.inf)
         radius, mate_radius = np.full((2, count, rows), np.nan)
 
+        first, behind = self._within_reach(standing)
+
         def look(at: int) -> None:
-            self._look(standing[at], best[at], entry[at])
+            self._look(standing[at], first[at], behind[at], best[at], entry[at])
 
         def search(chunk: Index) -> None:
             row = chunk % rows
@@ -211,32 +213,45 @@ class ToothPairs:
             advance.ravel()[chunk] = mate.base_radius * (value - centred)
             radius.ravel()[chunk], mate_radius.ravel()[chunk] = r, rho
 
-        _parallel(look, range(count), at_once=rows * len(self.radius) >= _CELLS)
+        _parallel(look, np.flatnonzero((behind > first).any(axis=1)).tolist(), at_once=rows * len(self.radius) >= _CELLS)
         reached = np.flatnonzero(best.ravel() >= 0)
         _parallel(search, [reached[i : i + _CELLS] for i in range(0, len(reached), _CELLS)])
         return PairContact(advance, radius, mate_radius)
 
-    def _look(self, angles: Floats, best: Index, entry: Index) -> None:
+    def _within_reach(self, angles: Floats) -> tuple[Index, Index]:
+        """Number of the first sample that may be inside the driven tip circle, and of the one behind the last: (angles, parts); equal where there is none.
+
+        The driver's tooth of row i stands at angle i modulo g of its part of `angles` (angles, parts, g), rad.
+        """
+        # Below this cosine a point at radius r lies outside the driven tip circle, or inside that of a ring; less by what rounding can be.
+        centre = self.centre  # signed
+        least_cosine = (centre**2 + self.radius**2 - self.tip**2) / (2.0 * centre * self.radius) - 1e-14
+        reach = np.where(least_cosine <= 1.0, np.arccos(np.minimum(np.maximum(least_cosine, 0.0), 1.0)), -np.inf)
+        low, high = (-reach - self.span[1])[:, None], (reach - self.span[0])[:, None]
+        first, behind = np.zeros((2, *angles.shape[:2]), np.intp)
+        block = max(1, 4 * _CELLS // (angles[0].size * len(self.radius)))
+        for at in range(0, len(angles), block):
+            standing = angles[at : at + block, :, :, None]
+            inside: Bools = np.any((standing >= low) & (standing <= high), axis=2)
+            some = inside.any(axis=2)
+            # One sample more at the low end, to see where the flank enters.
+            first[at : at + block] = np.maximum(inside.argmax(axis=2) - 1, 0) * some
+            behind[at : at + block] = (len(self.radius) - inside[..., ::-1].argmax(axis=2)) * some
+        return first, behind
+
+    def _look(self, angles: Floats, first: Index, behind: Index, best: Index, entry: Index) -> None:
         """Number of the best sample, and of the first one inside the driven tip circle, for all rows, (rows,); −1 is none.
 
-        The driver's tooth of row i stands at angle i modulo g of its part of `angles` (parts, g), rad.
+        The driver's tooth of row i stands at angle i modulo g of its part of `angles` (parts, g), rad; samples from `first` to before `behind` (parts,).
         """
-        # Below this cosine a point at radius r lies outside the driven tip circle, or inside that of a ring.
-        centre = self.centre  # signed
-        least_cosine = (centre**2 + self.radius**2 - self.tip**2) / (2.0 * centre * self.radius)
-        nearest = np.clip(0.0, angles[..., None] + self.span[0][:, None], angles[..., None] + self.span[1][:, None])
-        inside = ((np.cos(nearest) >= least_cosine) & (np.abs(nearest) < 0.5 * np.pi)).any(axis=1)
-        size, row = len(best) // len(inside), np.arange(len(best))
+        size, row = len(best) // len(first), np.arange(len(best))
         cos, sin = (of(angles)[row // size, row % angles.shape[1], None] for of in (np.cos, np.sin))
-        for number, samples in enumerate(inside):
-            within = np.flatnonzero(samples)
-            if not len(within):
+        for number, (start, stop) in enumerate(zip(first.tolist(), behind.tolist(), strict=True)):
+            if start == stop:
                 continue
-            # One sample more at the low end, to see where the flank enters.
-            start, stop = max(int(within[0]) - 1, 0), int(within[-1]) + 1
             step, end = max(1, _CELLS // (stop - start)), (number + 1) * size
-            for first in range(number * size, end, step):
-                part = slice(first, min(first + step, end))
+            for at in range(number * size, end, step):
+                part = slice(at, min(at + step, end))
                 best[part], entry[part] = self._look_at(part, slice(start, stop), cos[part], sin[part])
 
     def _look_at(self, rows: slice, samples: slice, cos: Floats, sin: Floats) -> tuple[Index, Index]:
@@ -244,17 +259,31 @@ class ToothPairs:
         start, centre = samples.start, self.centre
         per_node = (NODES - 1) / (self.tip**2 - self.deepest)
         x, y = self.x[rows, samples], self.y[rows, samples]
-        across = cos * x - sin * y
-        place = (centre**2 + self.radius[samples] ** 2 - 2.0 * centre * across - self.deepest) * per_node
+        across = cos * x  # in place from here on: most of the time was to fetch memory for what is thrown away
+        across -= sin * y
+        place = (2.0 * centre) * across
+        np.subtract(centre**2 + self.radius[samples] ** 2, place, out=place)
+        place -= self.deepest
+        place *= per_node
         within = place <= NODES - 1
-        node = np.clip(place, 0.0, NODES - 2).astype(np.intp)
-        place -= node
+        whole = np.maximum(place, 0.0)
+        np.floor(np.minimum(whole, NODES - 2, out=whole), out=whole)
+        place -= whole
+        node = whole.astype(np.intp)
         node += NODES * np.arange(rows.start, rows.stop)[:, None]
         flat = self.table.ravel()
-        value = flat[node]
-        value += place * (flat[node + 1] - value)
-        value += np.arctan((sin * x + cos * y) / (self.centre_distance - self.driven.gear.orientation * across))
-        value[~within] = -np.inf
+        value = flat.take(node)
+        node += 1
+        slope = flat.take(node)
+        slope -= value
+        slope *= place
+        value += slope
+        turn = sin * x
+        turn += cos * y
+        across *= self.driven.gear.orientation
+        turn /= np.subtract(self.centre_distance, across, out=across)
+        value += np.arctan(turn, out=turn)
+        np.copyto(value, -np.inf, where=~within)
         met, enters = within.any(axis=1), within.argmax(axis=1)
         return np.where(met, start + value.argmax(axis=1), -1), np.where(met & (enters > 0), start + enters, -1)
 
@@ -308,9 +337,10 @@ class ToothPairs:
 
 def _parallel(work: Callable[[T], None], items: Sequence[T], at_once: bool = True) -> None:
     """`work` on every item, in threads where it pays: numpy releases the interpreter inside its loops, and small items have none."""
-    if len(items) < 4 or not at_once:
+    count = threads()
+    if count == 1 or len(items) < 4 or not at_once:
         for item in items:
             work(item)
         return
-    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+    with ThreadPoolExecutor(count) as pool:
         list(pool.map(work, items))

@@ -24,6 +24,8 @@ MAX_SIDE_COSINE = 0.25
 """Above this, and above the lean of helical flanks, no normal is of a tooth side for the pattern of teeth."""
 LEAST_FACE_COSINE = 0.97
 """Above this: an end face."""
+_AT_ONCE = 16
+"""Centres that are looked at together: what is worked out of them stays in the cache."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,12 +253,18 @@ def _centres(points: Floats, gear: Gear, tries: int = 300, seed: int = 0) -> lis
     across = np.column_stack([-chord[:, 1], chord[:, 0]]) * lift[:, None]
     centres = np.vstack([middle + across, middle - across])
     tested = points[rng.choice(len(points), min(1500, len(points)), replace=False)]
-    x, y = tested[:, 0, None] - centres[:, 0], tested[:, 1, None] - centres[:, 1]
-    radius = np.sqrt(x * x + y * y)  # five times the pace of hypot
     slack = 0.08 * gear.transverse_module
     inner, outer = sorted((gear.root_radius, gear.tip_radius))
-    within = ((radius > inner - slack) & (radius < outer + slack)).mean(axis=0)
-    at_tip = (np.abs(radius - gear.tip_radius) < slack).mean(axis=0)
+    within, at_tip = np.zeros((2, len(centres)))
+    for start in range(0, len(centres), _AT_ONCE):
+        x, y = (tested[:, axis] - centres[start : start + _AT_ONCE, axis, None] for axis in (0, 1))
+        x *= x
+        y *= y
+        x += y
+        radius = np.sqrt(x, out=x)  # five times the pace of hypot
+        within[start : start + _AT_ONCE] = ((radius > inner - slack) & (radius < outer + slack)).mean(axis=1)
+        radius -= gear.tip_radius
+        at_tip[start : start + _AT_ONCE] = (np.abs(radius, out=radius) < slack).mean(axis=1)
     best = np.argsort(-(within + at_tip))[:3] if len(centres) else np.empty(0, dtype=int)
     return [free, *(centres[i] for i in best)]
 
