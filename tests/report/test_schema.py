@@ -47,9 +47,6 @@ def validator(name: str) -> Draft202012Validator:
     return Draft202012Validator(schema(name), registry=report @ Registry())
 
 
-VALIDATOR = validator("report")
-
-
 @cache
 def with_forecast() -> Any:
     """A pair whose wear law was fitted, with a forecast and limits."""
@@ -98,8 +95,8 @@ MADE = {
 @pytest.mark.parametrize("made", MADE)
 def test_what_is_written_is_valid(made):
     report = finite(document(MADE[made](), ["report.json"]))
-    assert [f"{list(error.absolute_path)}: {error.message[:200]}" for error in VALIDATOR.iter_errors(report)] == []
-    assert report["schema"] == SCHEMA == VALIDATOR.schema["properties"]["schema"]["const"]
+    assert [f"{list(error.absolute_path)}: {error.message[:200]}" for error in validator("report").iter_errors(report)] == []
+    assert report["schema"] == SCHEMA == validator("report").schema["properties"]["schema"]["const"]
 
 
 def test_what_the_weighing_says_is_a_note():
@@ -177,7 +174,7 @@ def test_a_key_that_is_lost_or_of_another_kind_is_seen():
         return named in MAY_BE_MISSING or play or key == "noise"
 
     whole = short(finite(document(with_load(), ["report.json"])))
-    assert seen_to_be_wrong(VALIDATOR, whole, optional) > 300
+    assert seen_to_be_wrong(validator("report"), whole, optional) > 300
 
 
 def inspected(loop: bool = True, **settings: Any) -> Any:

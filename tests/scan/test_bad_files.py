@@ -110,18 +110,19 @@ ABSURD = {
     "a.off": f"OFF\n{HUGE} {HUGE} 0\n".encode() + xyz(ball()),
     "list.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty list uint float x\nproperty float y\nproperty float z\nend_header\n"
     + b"\xff" * 100,
-    "bomb.xyz.gz": gzip.compress(b"0 0 0\n" * 20_000_000),
+    "bomb.xyz.gz": b"",  # made where it is looked at
 }
 
 
 @pytest.mark.parametrize("name", ABSURD)
 def test_an_absurd_count_costs_no_memory(tmp_path: Path, name: str) -> None:
     path = tmp_path / name
-    path.write_bytes(ABSURD[name])
+    data = ABSURD[name] or gzip.compress(b"0 0 0\n" * 20_000_000)
+    path.write_bytes(data)
     tracemalloc.start()
     try:
         message(path)
-        assert tracemalloc.get_traced_memory()[1] < 400 * len(ABSURD[name]) + 2_000_000
+        assert tracemalloc.get_traced_memory()[1] < 400 * len(data) + 2_000_000
     finally:
         tracemalloc.stop()
 
