@@ -13,7 +13,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
-from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SurfacePoints, locate
+from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, Bands, SurfacePoints, locate
 from gearwear.design.twist import from_end, section_angle
 from gearwear.errors import InputError
 from gearwear.robust import some_of
@@ -149,34 +149,48 @@ def fit_root(located: SurfacePoints, gear: Gear) -> Root:
 
 
 def _zone(located: SurfacePoints, gear: Gear) -> Floats:
-    """(n, 3) points about the roots, in the design frame, from the least radius on; not those of end faces and bore."""
+    """(n, 3) points about the roots, in the design frame; not those of end faces, of their edges and of the bore."""
     position = located.position + located.normal * np.nan_to_num(located.deviation)[:, None]
     radius = np.hypot(position[:, 0], position[:, 1])
     m = gear.transverse_module
     near = np.isin(located.surface, (FILLET, ROOT, FLANK, OTHER)) & (gear.orientation * (radius - gear.form_radius) < 0.05 * m)
     near &= gear.orientation * (radius - gear.root_radius) > -0.3 * m
-    near &= (position[:, 2] > 0.02 * m) & (position[:, 2] < gear.face_width - 0.02 * m)
+    edge = gear.spec.end_edge
+    if edge > 0.0:  # chamfered or rounded ends are no root: so far from them points are located on no surface
+        edge += Bands.wide(gear).end_high[1]
+    edge = max(0.02 * m, edge)
+    near &= (position[:, 2] > edge) & (position[:, 2] < gear.face_width - edge)
     if gear.spec.gap > 0.0:
         near &= from_end(gear, position[:, 2]) > 0.02 * m
     position, radius = position[near], radius[near]
     from_middle = np.abs(position[:, 2] - 0.5 * gear.face_width)
-    some = some_of(radius / m, from_middle / m, SAMPLE)
-    return np.asarray(position[some][np.argsort(radius[some], kind="stable")], dtype=np.float64)
+    return np.asarray(position[some_of(radius / m, from_middle / m, SAMPLE)], dtype=np.float64)
 
 
 def _misfit(points: Floats, gear: Gear) -> float:
-    """RMS of the common shape of the root against a gear's, mm; the points from the least radius on."""
+    """RMS of the common shape of the root against a gear's, mm."""
     located = locate(points, gear)
     on = np.isin(located.surface, (FILLET, ROOT))
     if on.sum() < LEAST_POINTS:
         return float("inf")
     deviation = np.nan_to_num(located.deviation[on])
     # The side of the space by the polar angle: bottom lands have no side of their own.
-    angle = np.remainder(section_angle(gear, *points[on].T), gear.pitch_angle) < 0.5 * gear.pitch_angle
-    middles = np.array([_middle(deviation[part], angle[part]) for part in np.array_split(np.arange(len(deviation)), BINS)])
+    is_left = np.remainder(section_angle(gear, *points[on].T), gear.pitch_angle) < 0.5 * gear.pitch_angle
+    along = np.argsort(_along(located.position[on], gear), kind="stable")
+    middles = np.array([_middle(deviation[part], is_left[part]) for part in np.array_split(along, BINS)])
     # What lies on no surface of this gear lies further off than any that does.
     lost = 1.0 - float(on.sum() + (located.surface == FLANK).sum()) / len(points)
     return float(np.hypot(middles.std(), lost * LOST * gear.transverse_module))
+
+
+def _along(foot: Floats, gear: Gear) -> Floats:
+    """How far along the root foot points (n, 3) lie, from the middle of the space on: across and up, mm; grows all the way to the flank.
+
+    Of the foot points: the radii of the points themselves would sort those of a bottom land, which has one radius, by their errors.
+    """
+    from_middle = np.remainder(section_angle(gear, *foot.T), gear.pitch_angle) - 0.5 * gear.pitch_angle
+    up = gear.orientation * (np.hypot(foot[:, 0], foot[:, 1]) - gear.root_radius)
+    return np.asarray(up + gear.root_radius * np.abs(from_middle))
 
 
 def _middle(deviation: Floats, is_left: Bools) -> float:

@@ -12,7 +12,8 @@ from gearwear.api import as_scan
 from gearwear.comparison.measured_gear import register
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.placing.root import fit_root
+from gearwear.design.surface import locate
+from gearwear.placing.root import BINS, SAMPLE, fit_root
 from tests.placing.placing import designed
 from tests.synthetic import Effect, GearNumbers, Recipe, make_scan
 
@@ -76,6 +77,26 @@ def test_a_root_that_no_round_rack_tip_makes_is_free():
     step = 0.2 * np.sin(np.pi * share) ** 8 * np.isin(located.surface, (1, 2))
     root = fit_root(located.with_deviation(located.deviation + step), gear)
     assert root.free and "no datum" in root.words()
+
+
+def test_noise_is_no_shape_of_the_root():
+    """Points on the very root of the design that err by 20 µm: what all teeth have in common is what medians of some 2 × 300 of them leave."""
+    gear, located = designed(WHEEL), measured().located
+    noise = np.random.default_rng(5).normal(0.0, 0.020, len(located))
+    root = fit_root(located.with_deviation(noise), gear)
+    points_of_a_side = SAMPLE / BINS / 2.0
+    assert root.misfit < 2.0 * 1.2533 * 0.020 / np.sqrt(2.0 * points_of_a_side)
+    assert root.fits_design
+
+
+def test_chamfered_ends_are_no_part_of_the_root():
+    """A chamfer of 1 mm on the drawing takes the points next to the ends away: those between them show the root they showed without it."""
+    points = measured().located
+    position = points.position + points.normal * np.nan_to_num(points.deviation)[:, None]
+    chamfered = Gear.from_spec(replace(designed(WHEEL).spec, end_chamfer=1.0))
+    root = fit_root(locate(position, chamfered), chamfered)
+    assert root.fits_design and not root.free
+    assert root.misfit == pytest.approx(measured().root.misfit, abs=0.0015)
 
 
 def test_a_scan_without_roots_says_nothing_of_them():
