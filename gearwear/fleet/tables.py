@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from datetime import date, datetime
 from pathlib import Path
@@ -123,14 +124,15 @@ def _rows(database: Any, query: str, files: Sequence[Path], scope: str) -> list[
 
 def _damaged(database: Any, query: str, files: Sequence[Path], scope: str) -> InputError:
     """Names the first of the tables with which those before it cannot be read."""
-    number = 1
-    while number < len(files):
+
+    def fails(number: int) -> bool:
         try:
             _rows(database, query, files[:number], scope)
         except Exception:
-            break
-        number += 1
-    file = files[number - 1]
+            return True
+        return False
+
+    file = files[bisect_left(range(1, len(files)), True, key=fails)]
     return InputError(
         f"{file}: is damaged or no table of a fleet; gearwear batch into the same folder, once {file.stem}.json is deleted, would be right"
     )

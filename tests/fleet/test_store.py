@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import builtins
 import errno
+import math
 import os
+import re
 from contextlib import nullcontext
 from datetime import datetime
 
 import pytest
 
 from gearwear.errors import InputError
+from gearwear.fleet import tables
 from gearwear.fleet.keys import Digests, Options, key_of
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.reading import read_fleet, trends
@@ -223,6 +226,24 @@ def test_a_table_that_was_damaged_is_refused_by_name(tmp_path, damage):
     with pytest.raises(InputError) as caught:
         read_fleet(store)
     assert str(bad) in str(caught.value) and "would be right" in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("at", [0, 1, 20, 32])
+def test_the_damaged_one_of_many_tables_is_found_in_few_reads(tmp_path, monkeypatch, at):
+    """Of n tables in log2 n + 1 reads beside the one that failed: one after the other, each with all before it, they were n² / 2 files."""
+    store = store_of(tmp_path / "s", [(row(f"G{i}"), report()) for i in range(33)])
+    files, read = sorted(store.folder.glob("*.parquet")), []
+    files[at].write_bytes(b"")
+
+    def counted(database, query, some, scope):
+        read.append(len(some))
+        return rows_of(database, query, some, scope)
+
+    rows_of = tables._rows
+    monkeypatch.setattr(tables, "_rows", counted)
+    with pytest.raises(InputError, match=re.escape(str(files[at]))):
+        tables.read_tables(files, "gear")
+    assert len(read) <= 1 + math.ceil(math.log2(33))
 
 
 def test_no_key_is_a_device_of_windows_or_another_in_other_letters():
