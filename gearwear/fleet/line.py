@@ -118,6 +118,12 @@ def beyond(value: float, std: float, low: float, high: float) -> tuple[float, fl
     return down if down > own else 0.0, up if up > own else 0.0
 
 
+def own_range(value: float, std: float, low: float, high: float) -> tuple[float, float]:
+    """What a scan says that its number lies between: its range, else its own 95 %."""
+    own = NORMAL_95 * std if math.isfinite(std) else 0.0
+    return low if math.isfinite(low) else value - own, high if math.isfinite(high) else value + own
+
+
 def chance_of(value: float, down: float, up: float, std: float, degrees: float = math.inf) -> float:
     """Chance of a number so far from 0 where it is 0, if its range may be all of it that the scatter is not.
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from gearwear.design.side import Side
+from gearwear.fleet.line import own_range
 
 Json = Mapping[str, Any]
 
@@ -90,22 +91,22 @@ def _estimate(name: str, scope: str, record: Json | None, factor: float = 1.0, *
 def _wear(report: Json) -> Iterator[Quantity]:
     wear: Json = report.get("wear") or {}
     regions, size = wear.get("regions") or [], "volume_mm3" if "volume_mm3" in wear else "area_mm2"
+    depths = [_depth(region) for region in regions]
     open_ = _even_open(report)
     extent = "detection_area_mm2" if size == "volume_mm3" else "detection_length_mm"
     depth, patch = HIDDEN * 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get(extent))
     if regions:
         yield from _estimate(f"wear_{size}", GEAR, wear.get(size))
-        deepest = max(regions, key=lambda region: _number(region["max_depth_um"]))
-        yield _depth(deepest, GEAR)
+        yield _deepest(depths)
     elif size in wear:  # nothing was found: what might be there all the same
         high = float(np.fmax(depth * patch, _number(wear[size].get("high"))))
         yield Quantity(name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=high)
         yield Quantity(name="wear_depth_mm", scope=GEAR, value=0.0, low=0.0, high=max(depth, HIDDEN * open_[1]))
     yield from _estimate("lost_volume_mm3", GEAR, wear.get("lost_volume_mm3"))
     seen = {(region["tooth"], region["flank"]) for region in regions}
-    for region in regions:
+    for region, depth_there in zip(regions, depths, strict=True):
         yield from _estimate(f"wear_{size}", TOOTH, region.get(size), tooth=int(region["tooth"]), flank=str(region["flank"]))
-        yield _depth(region, TOOTH)
+        yield depth_there
     for flank in wear.get("flanks") or []:
         if (flank["tooth"], flank["flank"]) not in seen:
             high = max(HIDDEN * 1e-3 * _number(flank.get("detection_limit_um")), HIDDEN * open_[1])
@@ -132,13 +133,20 @@ def _ends(value: float, down: float, up: float) -> tuple[float, float]:
     return value - down if down > 0.0 else math.nan, value + up if up > 0.0 else math.nan
 
 
-def _depth(region: Json, scope: str) -> Quantity:
+def _depth(region: Json) -> Quantity:
     """The deepest place of a flank, and within what limits it lies."""
     value, std, low, high = (1e-3 * _number(region.get(f"max_depth_{key}um")) for key in ("", "std_", "low_", "high_"))
-    flank = str(region["flank"]) if scope == TOOTH else ""
-    return Quantity(
-        name="wear_depth_mm", scope=scope, value=value, std=std, tooth=int(region["tooth"]), flank=flank, low=low, high=high
-    )
+    tooth, flank = int(region["tooth"]), str(region["flank"])
+    return Quantity(name="wear_depth_mm", scope=TOOTH, value=value, std=std, tooth=tooth, flank=flank, low=low, high=high)
+
+
+def _deepest(depths: Sequence[Quantity]) -> Quantity:
+    """That of the gear: as deep at least as each of its flanks is at least, and no deeper than one of them may be."""
+    deepest = max(depths, key=lambda depth: depth.value)
+    low = high = math.nan
+    if any(math.isfinite(depth.high) for depth in depths):
+        low, high = map(max, zip(*(own_range(depth.value, depth.std, depth.low, depth.high) for depth in depths), strict=True))
+    return replace(deepest, scope=GEAR, flank="", low=low, high=high)
 
 
 def _thickness(report: Json) -> Iterator[Quantity]:

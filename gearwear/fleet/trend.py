@@ -12,7 +12,7 @@ import numpy as np
 
 from gearwear.design.quantity import NORMAL_95
 from gearwear.fleet.conformity import COVERAGE, GOOD_TO_BAD, Conformity, conformity, worst
-from gearwear.fleet.line import FittedLine, Reach, beyond, chance_of, fit_line, interval, line_from_new, reaches
+from gearwear.fleet.line import FittedLine, Reach, beyond, chance_of, fit_line, interval, line_from_new, own_range, reaches
 from gearwear.fleet.order import Occasion, Order, order_of
 from gearwear.fleet.significance import discoveries
 
@@ -372,7 +372,7 @@ def _point(inspection: Occasion, scans: Sequence[Reading]) -> Point:
     values, stds = np.array([scan.value for scan in scans]), np.array([scan.std for scan in scans])
     stated = math.sqrt(float(np.mean(np.square(stds)))) if np.isfinite(stds).all() else math.nan
     seen = float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else 0.0
-    ends = [_own_range(scan) for scan in scans]
+    ends = [own_range(scan.value, scan.std, scan.low, scan.high) for scan in scans]
     open_ = any(math.isfinite(scan.low) or math.isfinite(scan.high) for scan in scans)
     return Point(
         inspected=inspection.inspected,
@@ -383,15 +383,6 @@ def _point(inspection: Occasion, scans: Sequence[Reading]) -> Point:
         low=min(low for low, _ in ends) if open_ else math.nan,
         high=max(high for _, high in ends) if open_ else math.nan,
         scans=len(scans),
-    )
-
-
-def _own_range(scan: Reading) -> tuple[float, float]:
-    """What a scan says that its number lies between: its range, else its own 95 %."""
-    own = NORMAL_95 * scan.std if math.isfinite(scan.std) else 0.0
-    return (
-        scan.low if math.isfinite(scan.low) else scan.value - own,
-        scan.high if math.isfinite(scan.high) else scan.value + own,
     )
 
 

@@ -68,6 +68,26 @@ def test_a_depth_that_may_be_thinner_teeth_has_a_lower_end():
         assert (depth.value, depth.low, depth.high) == (pytest.approx(0.06), pytest.approx(0.015), pytest.approx(0.064))
 
 
+def test_the_deepest_of_a_gear_is_as_deep_as_each_flank_is_for_sure():
+    """60 µm, of which 52 may be made so, beside 55 ± 0.5 on the other side: 54 at least, not 8; and 70 where another may have that."""
+    given = report(depth=(60.0, 1.0))
+    first = given["wear"]["regions"][0] | {"max_depth_low_um": 8.0, "max_depth_high_um": 62.0}
+    sure = first | {"flank": "right", "max_depth_um": 55.0, "max_depth_std_um": 0.5}
+    sure = {key: value for key, value in sure.items() if "low" not in key and "high" not in key}
+    wide = sure | {"tooth": 7, "max_depth_um": 20.0, "max_depth_low_um": 1.0, "max_depth_high_um": 70.0}
+    for regions, low, high in (
+        ([first], 8.0, 62.0),
+        ([first, sure], 55.0 - 1.96 * 0.5, 62.0),
+        ([wide, sure, first], 55.0 - 1.96 * 0.5, 70.0),
+    ):
+        given["wear"]["regions"] = regions
+        depth = rows(given)["wear_depth_mm"]
+        assert (depth.value, depth.tooth, depth.flank) == (0.06, 3, "")
+        assert (depth.low, depth.high) == (pytest.approx(1e-3 * low, rel=1e-4), pytest.approx(1e-3 * high))
+    given["wear"]["regions"] = [sure]
+    assert math.isnan(rows(given)["wear_depth_mm"].low) and math.isnan(rows(given)["wear_depth_mm"].high)
+
+
 def open_report(below, above, **more):
     """A volume whose range comes to so much evenly over one side, µm."""
     given = report(**more)
