@@ -180,7 +180,8 @@ def loaded_variants(
     check_whole("slices", slices, 1)
     check_whole("start_tooth", start_tooth)
     check_choice("cycle", cycle, CYCLES)
-    _check(driver, driven, force)
+    if not 0.0 <= force < np.inf:
+        raise InputError(f"force = {force:g} N: must be 0 or above")
     rigid = rigid_advance(
         driver, driven, centre_distance, side, positions_per_pitch, slices, cycle, start_tooth, misalignment, variants, corners
     )
@@ -242,14 +243,3 @@ def _reach(rigid: RigidAdvance, force: float, compliance: PairCompliance) -> flo
     """How far below the foremost pair another may lie and still be touched, mm: twice what one pair alone would give way."""
     soft = sum(float(body.tooth.max()) + body.shared for body in compliance.teeth) + 20.0 / compliance.material.plane_modulus
     return 2.0 * compliance.scale * soft * force / float(rigid.widths.sum())
-
-
-def _check(driver: ToothProfiles, driven: ToothProfiles, force: float) -> None:
-    if not 0.0 <= force < np.inf:
-        raise InputError(f"force = {force:g} N: must be 0 or above")
-    for part, profiles in (("driver", driver), ("driven gear", driven)):
-        missing = int((~np.isfinite(profiles.half_angle)).sum())
-        if missing:
-            raise InputError(
-                f"{part}: {missing} half angles are not finite; every flank must be known, or filled in, before contact"
-            )

@@ -14,6 +14,7 @@ from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import transverse_backlash
+from gearwear.meshing.contact import check_contact
 from gearwear.meshing.passes import Cycle, Passes, pitches
 from gearwear.meshing.path import path_of_contact
 from gearwear.meshing.slices import FaceParts
@@ -113,11 +114,12 @@ def rigid_advance(
     Raises
     ------
     InputError
-        If no tooth reaches the mate in some position, or a gear is internal.
+        As `mesh_contact`, and if a gear is internal.
     """
     n, gear, mate = positions_per_pitch, driver.gear, driven.gear
     for member in (gear, mate):
         refuse(member, "contact under load", Toothing.INTERNAL)
+    check_contact(driver, driven, centre_distance)
     face = FaceParts.of(gear, mate, slices)
 
     def prepared(first: ToothProfiles, second: ToothProfiles) -> Passes:

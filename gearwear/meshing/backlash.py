@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from gearwear.design.gear import Gear
-from gearwear.design.given import check_choice
+from gearwear.design.given import check_choice, check_number
 from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.pair import base_backlash, base_radius_sum, opposite_hands, same_base_pitch, tight_involute
 from gearwear.design.rack import bisect
@@ -82,6 +82,7 @@ def working_pressure_angle(pinion: Gear, gear: Gear, centre_distance: float) -> 
     InputError
         If the base pitches differ or the base circles meet.
     """
+    check_number("centre_distance", centre_distance, "mm")
     bases = sum_of_base_radii(pinion, gear)
     if not abs(bases) < centre_distance < math.inf:
         relation = "sum" if bases > 0.0 else "difference"

@@ -5,6 +5,7 @@ Serves design and worn gears alike: both come as `ToothProfiles`, either may be 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -16,6 +17,7 @@ from gearwear.arrays import Floats
 from gearwear.design.given import check_choice, check_number, check_whole
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
+from gearwear.design.spec import shown
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import check_mesh, transverse_backlash
@@ -117,7 +119,13 @@ def mesh_contact(
     check_whole("positions_per_pitch", positions_per_pitch, 1)
     check_whole("start_tooth", start_tooth)
     check_choice("cycle", cycle, CYCLES)
-    _check(driver, driven, centre_distance, tolerances)
+    if not isinstance(tolerances, Sequence) or not tolerances:
+        raise InputError(f"tolerances {shown(tolerances)}: a sequence of one or more would be right")
+    for tolerance in tolerances:
+        check_number("tolerances", tolerance, "mm")
+        if not 0.0 <= tolerance < math.inf:
+            raise InputError(f"tolerances {tolerances}: none below 0 or without end would be right")
+    check_contact(driver, driven, centre_distance)
     _check_variants(driver, driven, variants)
     drive_side = Side.of(drive_side)
     gear, mate, n = driver.gear, driven.gear, positions_per_pitch
@@ -281,7 +289,8 @@ def _contact_ratio(advance: Floats, n: int, tolerance: float) -> float:
     return counted / (_PARTS_PER_POSITION * len(before))
 
 
-def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, tolerances: tuple[float, ...]) -> None:
+def check_contact(driver: ToothProfiles, driven: ToothProfiles, centre: float) -> None:
+    """Refuse flanks that are not known everywhere, and gears that do not mesh at this centre distance, mm: tips must not meet roots."""
     for part, profiles in (("driver", driver), ("driven gear", driven)):
         missing = int((~np.isfinite(profiles.half_angle)).sum())
         if missing:
@@ -291,9 +300,9 @@ def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, toleranc
         for name, values, least in (("radius", profiles.radius, 2), ("z", profiles.z, 1)):
             if len(values) < least or not (np.diff(values) > 0.0).all():
                 raise InputError(f"{part}: {name} must rise strictly and have at least {least} value(s)")
-    if not tolerances or not min(tolerances) >= 0.0:
-        raise InputError(f"tolerances {tolerances}: at least one, and none negative, would be right")
     gear, mate = driver.gear, driven.gear
+    if not math.isfinite(centre):
+        raise InputError(f"centre distance {centre:g} mm: a finite one would be right")
     refuse(gear, "contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
     check_mesh(gear, mate)
     if mate.spec.internal:

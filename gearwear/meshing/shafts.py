@@ -8,7 +8,7 @@ from typing import get_args
 
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
-from gearwear.design.given import check_choice
+from gearwear.design.given import check_choice, check_number
 from gearwear.design.quantity import SPACE, number, sentence
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import (
@@ -151,6 +151,8 @@ def _movement(
     pinion: Gear, gear: Gear, centre_distance: float, thickness_loss: float, backlash: float, kind: BacklashKind, closest: float
 ) -> ShaftMovement:
     """`shaft_movement` with the closest distance known."""
+    for name, given in (("thickness_loss", thickness_loss), ("backlash", backlash)):
+        check_number(name, given, "mm")
     if not math.isfinite(thickness_loss):
         raise InputError(f"thickness loss = {thickness_loss:g} mm: must be a finite number")
     if not 0.0 <= backlash < math.inf:

@@ -15,7 +15,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
-from gearwear.design.given import check_choice
+from gearwear.design.given import check_choice, check_number
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.threads import on_one_thread
@@ -38,6 +38,7 @@ _MILD_WEAR_DEPTH = 0.010
 
 def check_confidence(confidence: float) -> None:
     """Refuse a confidence that no interval has: at 1 it has no end, and below 0 its limits change places."""
+    check_number("confidence", confidence, "")
     if not (
         confidence > 0.0 and 0.5 + 0.5 * confidence < 1.0
     ):  # as it is used: so near to 1 that it rounds to it; refuses NaN too
@@ -399,19 +400,23 @@ def fit_wear_law(
     """
     roll, depth = np.asarray(roll, dtype=np.float64), np.atleast_2d(np.asarray(depth, dtype=np.float64))
     errors = None if std is None else np.asarray(std, dtype=np.float64)
-    points = len(roll)
+    points = roll.size
     if (
         roll.ndim != 1
         or depth.shape[1:] != (points,)
         or (errors is not None and errors.shape not in ((points,), (points, points)))
     ):
         raise InputError("wear law: lengths of roll (n,), depths (n,) or (teeth, n) and standard deviations (n,) must match")
+    check_number("correlation_length", correlation_length, "mm")
     if not correlation_length >= 0.0:
         raise InputError(f"wear law: correlation length = {correlation_length:g} mm: must not be below 0")
     path = path_of_contact(gear, mate, centre_distance)
     use = np.isfinite(depth).all(axis=0) & (roll >= path.start_pinion) & (roll <= path.end_pinion) & (roll > 0.0)
     # A stretch that reaches past the path, where nothing is worn, is no mean of the law.
-    half = 0.5 * np.asarray(width, dtype=np.float64)
+    wide = np.asarray(width, dtype=np.float64)
+    if wide.shape not in ((), (points,)) or not (wide >= 0.0).all():
+        raise InputError("wear law: width must be a number of mm of roll, or one for each length of roll, and not below 0")
+    half = 0.5 * wide
     on_path = np.minimum(roll + half, path.end_pinion) - np.maximum(roll - half, path.start_pinion)
     use &= on_path >= LEAST_ON_PATH * 2.0 * half
     if errors is not None:
@@ -420,7 +425,7 @@ def fit_wear_law(
         raise InputError(
             f"wear law: {int(use.sum())} points on the path of contact, L = {path.start_pinion:.3f} … {path.end_pinion:.3f} mm; at least {_LEAST_POINTS} are needed"
         )
-    stretch = np.broadcast_to(np.asarray(width, dtype=np.float64), roll.shape)[use]
+    stretch = np.broadcast_to(wide, roll.shape)[use]
     roll, depth = roll[use], depth[:, use]
     if errors is not None:
         errors = errors[use] if errors.ndim == 1 else errors[np.ix_(use, use)]

@@ -16,6 +16,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, few
+from gearwear.design.given import check_choice, check_number
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact
 from gearwear.threads import on_one_thread
@@ -236,10 +237,10 @@ def cycles_left(
     [2.95, 3.0, 3.03]
     """
     check_confidence(confidence)
+    check_number("limit", limit, "mm")
     if not 0.0 < limit < math.inf:
         raise InputError(f"limit {limit:g} mm: must be above 0")
-    if quantity not in get_args(Quantity):
-        raise InputError(f"quantity {quantity}: must be one of {', '.join(get_args(Quantity))}")
+    check_choice("quantity", quantity, get_args(Quantity))
     run, states = _positive(cycles_run), [FlankState.of(fit) for fit in _alike(fits)]
     measure = measured_by(states[0], quantity, radius)
 
@@ -257,6 +258,7 @@ def _alike(fits: WearFit | Sequence[WearFit]) -> tuple[WearFit, ...]:
 
 
 def _positive(cycles_run: float) -> float:
+    check_number("cycles_run", cycles_run, "")
     if not 0.0 < cycles_run < math.inf:
         raise InputError(f"cycles run {cycles_run:g}: must be above 0; a rate needs the cycles in which the wear came about")
     return cycles_run
@@ -359,6 +361,7 @@ def measured_by(state: FlankState, quantity: Quantity, radius: float | None) -> 
     gear, roll, path = state.fit.gear, state.roll, state.path
     if quantity == "thickness":
         r = gear.reference_radius if radius is None else radius
+        check_number("radius", r, "mm")
         at = math.sqrt(max(r * r - gear.base_radius**2, 0.0))
         if not _on_path(state, at):
             raise InputError(

@@ -1,5 +1,7 @@
 """What a Python caller gives a meshing study: one tooth is as good as a list of it, and what cannot be is refused by its name."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from gearwear.meshing.clearance import interference, interference_free_centre_di
 from gearwear.meshing.contact import mesh_contact
 
 DESIGN = gw.read_design(gw.example())
+PAIR = tuple(DESIGN.gears.values())
 NEW = tuple(gw.nominal_profiles(gear) for gear in DESIGN.gears.values())
 
 
@@ -40,6 +43,13 @@ def test_one_tooth_may_be_a_number():
         (lambda: gw.LoadSpec(torque="5"), "torque = '5': a number, in N mm, would be right"),
         (lambda: gw.LoadSpec(torque=5e3, poisson="0.3"), "poisson = '0.3': a number would be right"),
         (lambda: mesh_contact(*NEW, "114.3"), "centre_distance = '114.3'"),
+        (lambda: mesh_contact(*NEW, math.inf), "centre distance inf mm: a finite one would be right"),
+        (lambda: mesh_contact(*NEW, 114.3, tolerances=0.001), "tolerances 0.001: a sequence of one or more would be right"),
+        (lambda: mesh_contact(*NEW, 114.3, tolerances=(0.001, math.nan)), "none below 0 or without end would be right"),
+        (lambda: gw.exact_meshing(*PAIR, "114.3"), "centre_distance = '114.3': a number, in mm, would be right"),
+        (lambda: gw.exact_meshing(*PAIR, np.array([114.3, 115.0])), "centre_distance = array([114.3, 115. ]): a number, in mm"),
+        (lambda: gw.shaft_movement(*PAIR, 114.3, "1.9"), "thickness_loss = '1.9': a number, in mm, would be right"),
+        (lambda: gw.shaft_movement(*PAIR, 114.3, 1.9, None), "backlash = None: a number, in mm, would be right"),
         (lambda: loaded_contact(*NEW, 114.3, "100", pair_compliance(*NEW)), "force = '100': a number, in N,"),
         (lambda: gw.as_dict(DESIGN), "result = Design: one of compare, inspect or study_meshing would be right"),
     ],
