@@ -14,16 +14,31 @@ NORMAL_MAD = 1.4826
 """Standard deviation per median absolute deviation of normal data: 1 / Φ⁻¹(3/4)."""
 
 
+def median(values: Floats) -> float:
+    """Median of finite values (n,), the same as numpy's; nan of none.
+
+    From the one value that `np.partition` puts in its place: with three of them, as `np.median` asks for, it takes several times as long.
+
+    >>> median(np.array([3.0, 1.0, 2.0])), median(np.array([4.0, 1.0, 2.0, 3.0]))
+    (2.0, 2.5)
+    """
+    half = len(values) // 2
+    if not len(values):
+        return float("nan")
+    ordered = np.partition(values, half)
+    return float(ordered[half] if len(values) % 2 else 0.5 * (ordered[:half].max() + ordered[half]))
+
+
 def scale_about(values: Floats, centre: float = 0.0) -> float:
     """1.4826 × median absolute deviation of the finite values from `centre`; nan where there is none."""
     finite = values[np.isfinite(values)]
-    return NORMAL_MAD * float(np.median(np.abs(finite - centre))) if len(finite) else float("nan")
+    return NORMAL_MAD * median(np.abs(finite - centre)) if len(finite) else float("nan")
 
 
 def median_scale(values: Floats) -> tuple[float, float]:
     """Median of the finite values and their scale about it; nan where there is none."""
     finite = values[np.isfinite(values)]
-    centre = float(np.median(finite)) if len(finite) else float("nan")
+    centre = median(finite)
     return centre, scale_about(finite, centre)
 
 

@@ -85,7 +85,12 @@ class SurfacePoints:
 
     def take(self, which: Bools | Ints | slice) -> SurfacePoints:
         """The points picked by a mask or by indices; of a slice, views into these."""
-        return SurfacePoints(*(getattr(self, f.name)[which] for f in fields(self)))
+        if isinstance(which, slice):
+            return SurfacePoints(*(getattr(self, f.name)[which] for f in fields(self)))
+        at = (
+            np.flatnonzero(which) if which.dtype == np.bool_ else which
+        )  # `take` is several times as fast as an index in brackets
+        return SurfacePoints(*(getattr(self, f.name).take(at, axis=0) for f in fields(self)))
 
     def own_roll(self, gear: Gear) -> Floats:
         """Length of roll (mm) at the points' own radius, not at their feet; (n,), nan off the flanks."""

@@ -197,9 +197,7 @@ def _free(planar: bool) -> Bools:
 
 
 def _thinned(points: Floats, count: int, seed: int) -> Floats:
-    if len(points) <= count:
-        return points
-    return points[np.random.default_rng(seed).choice(len(points), count, replace=False)]
+    return points if len(points) <= count else points[np.random.default_rng(seed).choice(len(points), count, replace=False)]
 
 
 def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> _Fit:
@@ -242,13 +240,14 @@ def _drawn_way_up(points: Floats, gear: Gear, pose: Pose, free: Bools) -> Pose:
 def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: float) -> tuple[Pose, float]:
     """One Gauss-Newton step with Tukey weights; returns the step's size in mm at the tip circle."""
     located = locate(pose.apply(points), gear)
-    known = located.take((located.surface != OTHER) if free[2] else (located.surface < END_LOW))
+    known = np.flatnonzero((located.surface != OTHER) if free[2] else (located.surface < END_LOW))
     if len(known) < 30:
         return pose, 0.0
-    columns = np.hstack([motion_columns(known.position, known.normal)[:, free], np.ones((len(known), 1))])
-    centre, scale = median_scale(known.deviation)
-    weight = tukey_weight(known.deviation - centre, max(scale, floor, 1e-9))
-    motion = _solve(columns, -known.deviation, weight)
+    position, normal, deviation = (of.take(known, axis=0) for of in (located.position, located.normal, located.deviation))
+    columns = np.hstack([motion_columns(position, normal)[:, free], np.ones((len(known), 1))])
+    centre, scale = median_scale(deviation)
+    weight = tukey_weight(deviation - centre, max(scale, floor, 1e-9))
+    motion = _solve(columns, -deviation, weight)
     full = np.zeros(6)
     full[free] = motion[:-1]
     limit = 0.2 * gear.transverse_module  # a step this far is a guess, not a correction

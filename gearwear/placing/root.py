@@ -16,7 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, Bands, SurfacePoints, locate
 from gearwear.design.twist import from_end, section_angle
 from gearwear.errors import InputError
-from gearwear.robust import some_of
+from gearwear.robust import median, some_of
 
 SAMPLE = 8_000
 """Points of the root that a candidate is tried on."""
@@ -196,7 +196,8 @@ def _along(foot: Floats, gear: Gear) -> Floats:
 def _middle(deviation: Floats, is_left: Bools) -> float:
     """Median of either side, averaged: a turn takes from one what it gives to the other."""
     sides = [deviation[is_left], deviation[~is_left]]
-    return float(np.mean([np.median(side) for side in sides if len(side)]))
+    medians = [median(side) for side in sides if len(side)]
+    return sum(medians) / len(medians)
 
 
 def _dedendum(points: Floats, gear: Gear) -> float:
