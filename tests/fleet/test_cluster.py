@@ -13,6 +13,7 @@ from functools import partial
 
 import pytest
 
+from gearwear import processors
 from gearwear.errors import InputError
 from gearwear.fleet.batch import run_batch
 from gearwear.fleet.cluster import local_workers, outcomes
@@ -41,10 +42,12 @@ def importable(monkeypatch):
 
 
 @pytest.mark.long
-def test_who_dies_on_a_scan_takes_that_one_alone():
-    """Two processes; one scan ends its process each time, one takes more memory than a worker has, one raises."""
+def test_who_dies_on_a_scan_takes_that_one_alone(monkeypatch):
+    """Two processes of one thread; one scan ends its process each time, one takes more memory than a worker has, one raises."""
+    monkeypatch.setenv(processors.THREADS, "3")
     jobs = [job(name, memory=8e8) for name in ("good1", "dies", "good2", "greedy", "good3", "raises", "good4", "good5")]
     with local_workers(2, 8e8) as client:
+        assert list(client.run(processors.threads).values()) == [1, 1]
         found = {one.key: one for one in outcomes(client, jobs, work)}
     assert len(found) == len(jobs)
     assert {key for key, one in found.items() if one.state is State.DONE} == {f"good{i}_key" for i in range(1, 6)}
