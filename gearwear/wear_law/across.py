@@ -17,7 +17,7 @@ LEAST_ROWS = 4
 LEAST_UNEVENNESS = 0.05
 """Lean or bow as a share of the mean depth below which wear counts as even."""
 SURE_STDS = 3.0
-"""Standard deviations from which on a lean or a bow is said."""
+"""Standard deviations from which on a lean or a bow is said; where they come from the scatter of few teeth, as many as are as seldom by Student's t."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +34,8 @@ class AcrossFace:
         Rise of the depth over the whole face width, mm; + is deeper at the upper end.
     bow, bow_std : float
         How much deeper the two ends are than the middle, mm.
+    lean_freedom, bow_freedom : float
+        Degrees of freedom of these standard deviations; inf where they do not come from the scatter of the teeth.
     """
 
     z: Floats
@@ -43,6 +45,8 @@ class AcrossFace:
     lean_std: float
     bow: float
     bow_std: float
+    lean_freedom: float = math.inf
+    bow_freedom: float = math.inf
 
     @property
     def mean(self) -> float:
@@ -52,20 +56,23 @@ class AcrossFace:
     @property
     def leans(self) -> bool:
         """Whether the lean is beyond chance and worth a word."""
-        return self._stands_out(self.lean, self.lean_std)
+        return self._stands_out(self.lean, self.lean_std, self.lean_freedom)
 
     @property
     def bows(self) -> bool:
         """Whether the bow is."""
-        return self._stands_out(self.bow, self.bow_std)
+        return self._stands_out(self.bow, self.bow_std, self.bow_freedom)
 
     @property
     def uneven(self) -> bool:
         """Whether wear is uneven across the face."""
         return self.leans or self.bows
 
-    def _stands_out(self, value: float, std: float) -> bool:
-        return abs(value) > SURE_STDS * std and abs(value) > LEAST_UNEVENNESS * abs(self.mean)
+    def _stands_out(self, value: float, std: float, freedom: float) -> bool:
+        from scipy.special import ndtr, stdtrit
+
+        sure = SURE_STDS if math.isinf(freedom) else float(stdtrit(freedom, ndtr(SURE_STDS)))
+        return abs(value) > sure * std and abs(value) > LEAST_UNEVENNESS * abs(self.mean)
 
 
 def wear_across_face(cells: Cells, half: int, teeth: Ints, loop: Loop | None, noise: float) -> AcrossFace | None:
@@ -115,18 +122,25 @@ def wear_across_face(cells: Cells, half: int, teeth: Ints, loop: Loop | None, no
     for i, at in enumerate(np.flatnonzero(rows)):
         row[i, teeth, half, at, grid.fillet :] = 1.0 / (count * grid.flank)
     covariance = noise_covariance(cells, noise, loop, row)
-    shape = np.einsum("ij,jk,ik->i", solve, covariance, solve)
-    scatter = each.var(axis=0, ddof=1) / count
-    std = np.sqrt(np.maximum(shape, scatter))
+    mean, std, freedom = mean_of_teeth(each, np.einsum("ij,jk,ik->i", solve, covariance, solve))
     return AcrossFace(
         z=z,
         depth=depth.mean(axis=0),
         std=np.sqrt(np.maximum(np.diag(covariance), depth.var(axis=0, ddof=1) / count)),
-        lean=float(each[:, 1].mean()),
+        lean=float(mean[1]),
         lean_std=float(std[1]),
-        bow=1.5 * float(each[:, 2].mean()),
+        bow=1.5 * float(mean[2]),
         bow_std=1.5 * float(std[2]),
+        lean_freedom=float(freedom[1]),
+        bow_freedom=float(freedom[2]),
     )
+
+
+def mean_of_teeth(each: Floats, errors: Floats) -> tuple[Floats, Floats, Floats]:
+    """Means of what teeth have, (k, n), their standard deviations and the degrees of freedom of these: by the scatter of the teeth, or by a variance
+    of the means known otherwise, (n,), whichever is greater."""
+    scatter = each.var(axis=0, ddof=1) / len(each)
+    return each.mean(axis=0), np.sqrt(np.maximum(errors, scatter)), np.where(scatter > errors, len(each) - 1.0, np.inf)
 
 
 def across_words(across: AcrossFace) -> str:
