@@ -203,7 +203,7 @@ def centre_distance_for_backlash(
     Returns
     -------
     float
-        mm. Exact; closed form but for "operating", where a Newton iteration ends at machine precision.
+        mm. Exact; closed form but for "operating", which is found by bisection to machine precision.
 
     Raises
     ------
@@ -224,7 +224,7 @@ def centre_distance_for_backlash(
         )
     alpha = inverse_involute(value)
     if kind == "operating":
-        alpha = (_operating_angle if bases > 0.0 else _operating_angle_inside)(alpha, tight, backlash, bases)
+        alpha = _operating_angle(alpha, tight, backlash, bases)
     return abs(bases) / math.cos(alpha)
 
 
@@ -251,28 +251,10 @@ def sum_of_base_radii(pinion: Gear, gear: Gear) -> float:
 
 
 def _operating_angle(start: float, tight: float, backlash: float, bases: float) -> float:
-    """α_wt at which ``2 Σr_b (inv α − tight) = j_wt cos α``.
-
-    The difference of the two sides rises and is convex, and `start` (j_wt taken as normal) lies above the root, so Newton
-    comes down on it without overshoot.
-    """
-    alpha = start
-    for _ in range(100):
-        slope = 2.0 * bases * math.tan(alpha) ** 2 + backlash * math.sin(alpha)
-        excess = 2.0 * bases * (involute_function(alpha) - tight) - backlash * math.cos(alpha)
-        if slope <= 0.0 or excess <= 0.0:
-            break
-        lower = alpha - excess / slope
-        if lower >= alpha:
-            break
-        alpha = lower
-    return alpha
-
-
-def _operating_angle_inside(start: float, tight: float, backlash: float, bases: float) -> float:
-    """The same with a ring, between `start`, which lies below, and the angle without backlash."""
+    """α_wt at which ``2 Σr_b (inv α − tight) = j_wt cos α``: between the angle without backlash, or the base circles', and `start`, j_wt taken as
+    normal, which lies beyond the root, with a ring before it."""
 
     def excess(alpha: float) -> float:
         return involute_function(alpha) - tight - backlash * math.cos(alpha) / (2.0 * bases)
 
-    return bisect(excess, start, inverse_involute(tight))
+    return bisect(excess, *sorted((start, inverse_involute(max(tight, 0.0)))))
