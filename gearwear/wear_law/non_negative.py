@@ -74,14 +74,14 @@ def fitted(basis: Floats, depth: Floats, errors: Floats) -> Fitted:
 
 def _greater(known: Floats, scattered: Floats, freedom: int) -> tuple[Floats, Floats]:
     """The greater of two covariances, direction by direction, and the degrees of freedom of its variances (Satterthwaite 1946), when
-    the second has so few."""
+    the second has so few: where that is the greater, all of it is from the scatter, not only what the first lacks."""
     root = np.linalg.cholesky(known)
     inward = np.linalg.inv(root)
     value, vector = np.linalg.eigh(inward @ scattered @ inward.T)
     axes = root @ vector
     whole = (axes * np.maximum(value, 1.0)) @ axes.T
-    share = np.maximum(1.0 - np.diag(known) / np.diag(whole), 1e-9)
-    return whole, freedom / share**2
+    share = axes**2 @ np.where(value > 1.0, value, 0.0) / np.diag(whole)
+    return whole, freedom / np.maximum(share, 1e-9) ** 2
 
 
 def _told_apart(basis: Floats) -> Bools:
