@@ -116,8 +116,8 @@ class UntoldFlanks:
     raised : (m,) float
         The same of the cells of flanks.
     fields : (m, k) float
-        How high each may stand besides, mm, even all over it: the RMS by which sound flanks, each left out in turn, stand off where the rest of their
-        tooth has them.
+        How high each may stand besides, mm, even all over it: by what sound flanks, each left out in turn, scatter about the mean of their side off where
+        the rest of their tooth has them; and all of a side alike, by how well that mean is known.
     """
 
     level: Floats

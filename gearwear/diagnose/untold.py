@@ -2,18 +2,24 @@
 
 A flank that is hollow over much of it tells nothing of pitch and thickness. Its fillet and the other flank of its tooth do, as far as tools cut them together:
 how far that is, the flanks say that are sound, each left out in turn. That the amounts of all teeth add up to zero is how they are written, and tells nothing.
+
+With amounts a told by the rest of tooth k, the flank left out stands at c·a + m + e: m is the same on all flanks of its side, the form of that and what the
+form of the rest has made of a, whether an effect has its name or not; e has the variance s² from tooth to tooth. So a flank that is no datum was made at c·a
+and the mean of the sound ones, with s² by itself and s² / n of n sound flanks in common with all others of its side.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import fdtri
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.each_tooth import EachTooth
 from gearwear.diagnose.found import FoundEffect, Loop, UntoldFlanks
 from gearwear.diagnose.rules import rules
@@ -44,36 +50,95 @@ def with_untold(loop: Loop, cells: Cells) -> Loop:
         return loop
     columns, amounts = _amounts(cells, loop, [loop.effects[i] for i in own])
     found = (columns * amounts[points.tooth]).sum(axis=1)
-    target, used = loop.residual_after + found, np.flatnonzero(loop.use & cells.seen)
+    stands, used = _unexplained(cells, loop) + found - loop.form_of_all, np.flatnonzero(loop.use & cells.seen)
+    rows_of = {k: used[points.tooth[used] == k // len(Side)] for k in (*map(int, sound), *map(int, hidden))}
 
-    def rest(k: int) -> tuple[Floats, Floats]:
+    def rest(k: int, target: Floats) -> tuple[Floats, Floats]:
         """Least amounts of a tooth with which the rest of it stands where it does, the flank `k` left out; and how they go together where it tells least."""
-        rows = used[(points.tooth[used] == k // len(Side)) & ~(flank & (which == k))[used]]
+        rows = rows_of[k][~(flank & (which == k))[rows_of[k]]]
         root = np.sqrt(weight[rows])
         told = columns[rows] * root[:, None]
         return np.linalg.lstsq(told, target[rows] * root)[0], np.linalg.eigh(told.T @ told)[1][:, 0]
 
-    off = []
-    for k in map(int, sound):
-        rows = used[(flank & (which == k))[used]]
-        off.append(np.average(target[rows] - columns[rows] @ rest(k)[0], weights=weight[rows]))
-    rms = math.sqrt(float(np.mean(np.square(off))))
-    raised, (level, level_std) = np.zeros(len(flank)), np.zeros((2, cells.grid.gear.teeth, len(Side)))
+    def left_out(target: Floats) -> _SoundFlanks:
+        off, own_mean, more = np.zeros(len(sound)), np.zeros(len(sound)), np.zeros((len(sound), len(own)))
+        for i, k in enumerate(map(int, sound)):
+            rows = rows_of[k][(flank & (which == k))[rows_of[k]]]
+            told = rest(k, target)[0]
+            off[i] = np.average(target[rows] - columns[rows] @ told, weights=weight[rows])
+            own_mean[i] = np.average(target[rows], weights=weight[rows])
+            more[i] = told - amounts[k // len(Side)]
+        return _SoundFlanks.of(off, own_mean, more, sound % len(Side))
+
+    known, waves = left_out(stands), loop.residual_after - loop.form_of_all - loop.left
+    if waves.any():
+        beside = left_out(stands - waves)
+        if known.scatter > math.sqrt(float(fdtri(known.free, known.free, 1.0 - rules().significance))) * beside.scatter:
+            known, stands, waves = beside, stands - waves, np.zeros_like(waves)
+    raised, (level, level_std, shared) = np.zeros(len(flank)), np.zeros((3, cells.grid.gear.teeth, len(Side)))
     effects, scatter = list(loop.effects), np.sqrt(np.mean(amounts[sound // len(Side)] ** 2, axis=0))
     for k in map(int, hidden):
         at, on = (k // len(Side), k % len(Side)), np.flatnonzero(flank & (which == k))
-        told, free = rest(k)
-        raised[on] = columns[on] @ told - found[on]
-        level[at] = raised[on].mean()
+        told, free = rest(k, stands)
         lever = columns[on].mean(axis=0)
         if told.any():
-            level_std[at], stds = rms, np.abs(rms / (lever @ free) * free)
+            raised[on] = columns[on] @ told + known.off[at[1]]
+            level_std[at], shared[at], stds = known.scatter, known.off_std[at[1]], np.abs(known.scatter / (lever @ free) * free)
+            told = told - known.more[at[1]]
         else:  # nothing of the tooth is told: it is as others are
+            raised[on] = known.own[at[1]]
             level_std[at], stds = np.linalg.norm(lever * scatter), scatter
+        raised[on] -= found[on] + waves[on]
+        level[at] = raised[on].mean()
         for i, value, std in zip(own, told, stds, strict=True):
             effects[i] = _told(effects[i], at[0], float(value), float(std))
-    fields = (flank[:, None] & (which[:, None] == hidden)) * level_std.reshape(-1)[hidden]
-    return replace(loop, effects=tuple(effects), untold=UntoldFlanks(level, level_std, raised, fields))
+    apart = (flank[:, None] & (which[:, None] == hidden)) * level_std.reshape(-1)[hidden]
+    alike = np.column_stack(
+        [np.where(flank & (which % len(Side) == half), shared.reshape(-1)[which], 0.0) for half in range(len(Side))]
+    )
+    return replace(
+        loop,
+        effects=tuple(effects),
+        untold=UntoldFlanks(level, np.hypot(level_std, shared), raised, np.hstack([apart, alike[:, alike.any(axis=0)]])),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _SoundFlanks:
+    """What sound flanks, each left out in turn, say of those that are no datum; of left and right flanks.
+
+    Parameters
+    ----------
+    off, off_std : (2,) float
+        How far a flank stands on average off where the rest of its tooth has it, mm: by what form its side has and what that of the rest makes of the amounts.
+    own : (2,) float
+        How high a flank stands on average, the amounts of its tooth left in, mm.
+    more : (2, e) float
+        How much greater amounts on average come out that the rest of a tooth tells.
+    scatter : float
+        Standard deviation of one flank about `off`, mm.
+    free : int
+        Degrees of freedom of that.
+    """
+
+    off: Floats
+    off_std: Floats
+    own: Floats
+    more: Floats
+    scatter: float
+    free: int
+
+    @classmethod
+    def of(cls, off: Floats, own: Floats, more: Floats, half: Ints) -> _SoundFlanks:
+        """From the same of each of some flanks of left, 0, and right, 1; a side of which there are too few is taken for as drawn."""
+        every = np.column_stack([off, own, more])
+        number = np.bincount(half, minlength=len(Side))
+        enough = number > 1  # one has no scatter about itself
+        mean = np.array([every[half == side].mean(axis=0) if enough[side] else 0.0 * every[0] for side in range(len(Side))])
+        free = max(len(off) - int(enough.sum()), 1)
+        scatter = math.sqrt(float(((off - mean[half, 0]) ** 2).sum()) / free)
+        off_std = np.where(enough, scatter / np.sqrt(np.maximum(number, 1)), math.sqrt(float(np.mean(off**2))))
+        return cls(mean[:, 0], off_std, mean[:, 1], mean[:, 2:], scatter, free)
 
 
 def _told(found: FoundEffect, tooth: int, value: float, std: float) -> FoundEffect:
@@ -85,6 +150,14 @@ def _told(found: FoundEffect, tooth: int, value: float, std: float) -> FoundEffe
     values[tooth], stds[tooth] = own.value, np.hypot(own.std, np.nanmedian(stds))
     changed = replace(known, value=tuple(values.tolist()), std=tuple(stds.tolist()))
     return replace(found, parameters={**found.parameters, parameter.name: changed})
+
+
+def _unexplained(cells: Cells, loop: Loop) -> Floats:
+    """What the amplitudes of a loop leave of its cells, (m,) mm: where waves are unexplained they were fitted beside these, and `residual_after` without."""
+    left = np.zeros(len(cells.seen))
+    points = cells.points.take(cells.seen)
+    left[cells.seen] = points.deviation - loop.deviation(points, frozenset(Kind))
+    return np.where(cells.seen, left - cells.motion @ loop.motion, 0.0)
 
 
 def _amounts(cells: Cells, loop: Loop, effects: list[FoundEffect]) -> tuple[Floats, Floats]:
