@@ -28,6 +28,9 @@ HALF_WIDTHS = (0.02, 0.1)
 POINTS_PER_CUTOFF = 30.0
 """Points that a strip holds in a cut-off wavelength, if that does not make it wider than it may be."""
 
+LED = 3
+"""Errors of leading points to the line, the last of those that a trace's bins share: of each line alone."""
+
 PLACES = ("low", "middle", "high")
 """Of profiles: near z = 0, at mid-face, near the other end; of helices: near the root, at the measuring circle, near the tip."""
 
@@ -83,10 +86,15 @@ class Sections:
 
 
 def _difference(high: LineTraces, low: LineTraces, over: float, sign: Floats | float = 1.0) -> Estimate:
-    scale = over / (high.at - low.at) * high.evaluation.range.length / high.evaluation.range.stated
-    slope, other_slope = high.evaluation.slope, low.evaluation.slope
+    """Of slopes: what the registration does to both lines is in it by its difference, the rest by both."""
+    scale = np.asarray(sign) * over / (high.at - low.at) * high.evaluation.range.length / high.evaluation.range.stated
+    slopes = [line.evaluation.slope for line in (high, low)]
+    moved = [np.zeros((*one.value.shape, 0)) if one.shared is None else one.shared[..., :-LED] for one in slopes]
+    own = [one.standard**2 - (by**2).sum(axis=-1) for one, by in zip(slopes, moved, strict=True)]
     return Estimate.plain(
-        sign * scale * (slope.value - other_slope.value), abs(scale) * np.hypot(slope.standard, other_slope.standard)
+        scale * (slopes[0].value - slopes[1].value),
+        np.abs(scale) * np.sqrt(np.maximum(own[0] + own[1], 0.0)),
+        scale[..., None] * (moved[0] - moved[1]),
     )
 
 
@@ -165,7 +173,7 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
 
     Returns
     -------
-    Traces, (teeth, 2, n, 3) float
+    Traces, (teeth, 2, n, `LED`) float
         The errors per standard deviation of the three independent ones of the fit, mm.
 
     Notes
@@ -188,7 +196,7 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
     mean = np.column_stack([np.bincount(cell, column, number) / count for column in columns.T])
     level = np.bincount(cell, delta, number) / count
     off, remainder = columns - mean[cell], delta - level[cell]
-    led, errors = traces.deviation.reshape(-1, n).copy(), np.zeros((2 * teeth, n, 3))
+    led, errors = traces.deviation.reshape(-1, n).copy(), np.zeros((2 * teeth, n, LED))
     order = np.argsort(flank, kind="stable")
     border = np.searchsorted(flank[order], np.arange(2 * teeth + 1))
     for index in range(2 * teeth):
@@ -200,4 +208,4 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
         led[index] -= rows @ (inverse @ (off[mine].T @ remainder[mine]))
         errors[index] = noise * (rows @ covariance_root(inverse))
     moved = replace(traces, deviation=led.reshape(traces.deviation.shape), across=np.where(traces.count > 0, at, np.nan))
-    return moved, errors.reshape(teeth, 2, n, 3)
+    return moved, errors.reshape(teeth, 2, n, LED)

@@ -108,6 +108,20 @@ def test_sections_are_those_of_their_lines(gear, twisted):
     assert within(found.helix_twist.at(whole), 60 * UM).all()
 
 
+def test_twist_by_two_lines_is_as_unsure_as_by_the_surface(gear):
+    """An axis that may be tilted moves the sections near both ends apart: all three twists of a flank are wrong by the same, and say so."""
+    profile, helix, tilt, middle = profile_range(gear), helix_range(gear), 3e-4, np.array([0.0, 0.0, 0.5 * gear.face_width])
+    turns = np.eye(3)[:2]
+    motions = np.hstack([np.cross(middle, turns), turns]) * tilt
+    covariance = motions.T @ motions
+    plain = scattered(gear, lambda flank, roll, z: np.zeros(len(flank)), noise=1e-6, count=60_000)
+    surface = evaluate_areal(plain, profile, helix, 1e-6, covariance=covariance).flanks.twist.standard
+    lines = take_sections(plain, profile, helix, profile.middle, 1e-6, covariance=covariance)
+    assert surface.min() > UM
+    for twist in (lines.profile_twist, lines.helix_twist):
+        np.testing.assert_allclose(twist.standard, surface, rtol=0.02)
+
+
 def test_a_section_sees_the_pit_on_it(gear, twisted):
     profile, helix = profile_range(gear), helix_range(gear)
     found = take_sections(twisted, profile, helix, profile.middle, NOISE)
