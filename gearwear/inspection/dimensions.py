@@ -124,7 +124,7 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     gear : Gear
         The nominal gear.
     teeth : int or None
-        k; None: the number whose plates touch nearest to the shifted reference circle r + x m, or fewer where the face is too narrow.
+        k; None: of those whose plates touch the involute and stand on the face the one that does so nearest to the shifted reference circle r + x m.
 
     Raises
     ------
@@ -154,14 +154,13 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
         """Face width, mm."""
         return 2.0 * touching(k) * abs(math.tan(gear.base_helix_angle)) + PLATE_HOLD if gear.twist != 0.0 else 0.0
 
+    fits = [k for k in range(1, gear.teeth) if gear.form_roll <= touching(k) <= gear.tip_roll]
     if teeth is None:
         wanted = _shifted_reference_roll(gear)
-        teeth = max(1, round((2.0 * wanted / cosine**2 - base_thickness) / gear.base_pitch) + 1)
-        while teeth > 1 and needs(teeth) > gear.face_width and touching(teeth - 1) >= gear.form_roll:
-            teeth -= 1
+        stand = [k for k in fits if needs(k) <= gear.face_width] or fits[:1] or range(1, gear.teeth)
+        teeth = min(stand, key=lambda k: abs(touching(k) - wanted))
     roll = touching(teeth)
-    if not (1 <= teeth < gear.teeth and gear.form_roll <= roll <= gear.tip_roll):
-        fits = [k for k in range(1, gear.teeth) if gear.form_roll <= touching(k) <= gear.tip_roll]
+    if teeth not in fits:
         right = f"{fits[0]} to {fits[-1]} teeth can be spanned" if fits else "no number of teeth can be spanned"
         raise InputError(
             f"[{gear.spec.name}] span over {teeth} teeth touches at a roll length of {roll:.3f} mm, the involute has {gear.form_roll:.3f} to {gear.tip_roll:.3f} mm: {right}"

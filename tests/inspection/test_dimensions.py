@@ -104,6 +104,19 @@ def test_pins_and_plates_touch_the_involute_where_they_say(z, m, x, alpha):
     assert gear.form_roll <= gauge.roll <= gear.tip_roll
 
 
+@pytest.mark.parametrize(("teeth", "shift", "helix", "k"), [(15, -0.53, 0.0, 2), (7, -0.34, 28.6, 2)])
+def test_a_span_is_chosen_wherever_one_can_be_taken(teeth, shift, helix, k):
+    """Much negative shift: over the number nearest to the reference circle the plates would touch below the form circle."""
+    gear = Gear.from_spec(GearSpec("pinion", teeth, 2.0, 60.0, profile_shift=shift, helix_angle=math.radians(helix)))
+    assert span(gear).teeth == k == min(n for n in range(1, teeth) if gear.form_roll <= _touching(gear, n))
+
+
+def _touching(gear, k):
+    """L where the plates of a span over k teeth touch: half of a normal that leans by the base helix angle, in the section."""
+    normal = ((k - 1) * gear.base_pitch + 2.0 * gear.base_radius * gear.base_half_angle) * gear.base_helix_cosine
+    return 0.5 * normal * gear.base_helix_cosine
+
+
 def test_odd_teeth_by_the_triangle_of_the_pin_centres():
     gear = Gear.from_spec(GearSpec("gear", 25, 2.0, 20.0))
     pins = over_pins(gear)
