@@ -7,7 +7,7 @@ few others only these few are solved for (Woodbury 1950).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,7 +21,7 @@ SPANNED = 1e-6
 MANY = 8
 """Columns from which on a candidate is one of many: a freedom for every tooth; numerical."""
 NOTHING = -1
-"""In place of a column where a fit has fewer of them than others that are solved with it."""
+"""In place of a column where a fit has fewer of them than others that are solved with it, and of one that nobody sees."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Block:
     at : (n,) int
         Which candidates.
     which : (n, size) int
-        The columns of each that anybody sees: what nobody sees neither helps nor hinders.
+        The columns of each that anybody sees, by their place among these: what nobody sees neither helps nor hinders.
     """
 
     at: Ints
@@ -44,20 +44,24 @@ class Block:
 class Beside:
     """The sums of columns without what others span of them: a fit on them is the fit on both (Frisch and Waugh 1933, Lovell 1963).
 
-    So what is in every fit is solved for once, and a search goes on with the few columns that it tries.
+    So what is in every fit is solved for once, and a search goes on with the few columns that it tries. Columns that nobody sees, those of teeth that are
+    not among the cells, take no part in the sums: they get no amplitude.
 
     Parameters
     ----------
-    information : (p, p) float
-    moment : (p,) float
+    place : (p + 1,) int
+        Of each column among the q that anybody sees, or `NOTHING`, which the last one is.
+    information : (q, q) float
+    moment : (q,) float
     square : float
         Weighted sum of squares that the others leave.
-    own : (p,) float
+    own : (q,) float
         Weighted squares of the whole columns; by these the ridge is measured.
     candidates : tuple of (k,) int
         Columns of each that is tried.
     """
 
+    place: Ints
     information: Floats
     moment: Floats
     square: float
@@ -67,7 +71,7 @@ class Beside:
     @cached_property
     def _blocks(self) -> tuple[Block, ...]:
         """The candidates in groups of one size."""
-        seen = [columns[self.own[columns] > 0.0] for columns in self.candidates]
+        seen = [at[at != NOTHING] for at in (self.place[columns] for columns in self.candidates)]
         sizes = np.array([len(columns) for columns in seen], dtype=np.int64)
         groups = []
         for size in np.unique(sizes[sizes > 0]):
@@ -97,38 +101,39 @@ class Beside:
 
     def solve(self, which: Ints) -> tuple[Floats, Floats]:
         """Amplitudes and inverse information of the fit on columns `which` beside the others."""
-        scaled, root = self._scaled(which)
+        scaled, root, moment = self._scaled(which)
         inverse = np.linalg.inv(scaled) / (root[:, None] * root)
-        return inverse @ self.moment[which], inverse
+        return inverse @ moment, inverse
 
     def fit(self, which: Ints) -> tuple[Floats, float]:
         """Amplitudes of the fit on columns `which`, and the weighted sum of squares that it leaves."""
         if len(which) == 0:
             return np.zeros(0), self.square
-        scaled, root = self._scaled(which)
-        amplitudes = np.linalg.solve(scaled, self.moment[which] / root) / root
-        return amplitudes, float(self.square - amplitudes @ self.moment[which])
+        scaled, root, moment = self._scaled(which)
+        amplitudes = np.linalg.solve(scaled, moment / root) / root
+        return amplitudes, float(self.square - amplitudes @ moment)
 
-    def _scaled(self, which: Ints) -> tuple[Floats, Floats]:
-        """The information of columns `which` in the lengths of the whole columns, with the ridge; and these lengths."""
-        root = np.sqrt(self.own[which])
+    def _scaled(self, which: Ints) -> tuple[Floats, Floats, Floats]:
+        """The information of columns `which` in the lengths of the whole columns, with the ridge; these lengths, and the moment."""
+        at, (information, moments, squares) = self.place[which], self._rows
+        root = np.sqrt(squares[at])
         root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
-        scaled = self.information[which[:, None], which] / (root[:, None] * root)
-        return scaled + RIDGE * np.eye(len(which)), root
+        scaled = information[at[:, None], at] * (at != NOTHING) / (root[:, None] * root)
+        return scaled + RIDGE * np.eye(len(which)), root, moments[at]
 
     def beside(self, which: Ints) -> Beside:
         """The same beside columns `which` too."""
-        scaled, root = self._scaled(which)
-        across = self.information[which] / root[:, None]
-        spanned = np.linalg.solve(scaled, np.column_stack([across, self.moment[which] / root]))
+        scaled, root, aim = self._scaled(which)
+        across = self._rows[0][self.place[which]] / root[:, None]
+        spanned = np.linalg.solve(scaled, np.column_stack([across, aim / root]))
         moment = self.moment - across.T @ spanned[:, -1]
-        square = float(self.square - (self.moment[which] / root) @ spanned[:, -1])
-        return Beside(self.information - across.T @ spanned[:, :-1], moment, square, self.own, self.candidates)
+        square = float(self.square - (aim / root) @ spanned[:, -1])
+        return replace(self, information=self.information - across.T @ spanned[:, :-1], moment=moment, square=square)
 
     def tried(self, bases: Ints) -> tuple[Floats, Floats]:
         """Of each of some fits on columns `bases` (n, k), some of them `NOTHING`, the weighted sum of squares that it leaves, (n,), and the fall of it
         when each of the candidates is added, (n, candidates)."""
-        count, (information, moments, own_squares) = len(bases), self._rows
+        count, bases, (information, moments, own_squares) = len(bases), self.place[bases], self._rows
         root = np.sqrt(own_squares[bases])
         root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
         across, aim = information[bases] / root[..., None], moments[bases] / root

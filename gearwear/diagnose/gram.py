@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.diagnose.beside import RIDGE, Beside
+from gearwear.diagnose.beside import NOTHING, RIDGE, Beside
 from gearwear.diagnose.columns import CellColumns
 
 BATCH = 4096
@@ -116,9 +116,13 @@ class Gram:
         """What all columns hold beside the fit on columns `base`, and candidates of which each is some columns."""
         a, b = self._sums(None)
         amplitudes, inverse = self.solve(base)
-        spanned = a[:, base] @ inverse
         square = float(self.square.sum() - amplitudes @ b[base])
-        return Beside(a - spanned @ a[base], b - a[:, base] @ amplitudes, square, np.diag(a).copy(), tuple(candidates))
+        seen = np.flatnonzero(np.diag(a) > 0.0)
+        place = np.full(len(b) + 1, NOTHING)
+        place[seen] = np.arange(len(seen))
+        across = a[seen[:, None], base]
+        left = a[seen[:, None], seen] - across @ inverse @ across.T
+        return Beside(place, left, b[seen] - across @ amplitudes, square, np.diag(a)[seen], tuple(candidates))
 
     def held_out(self, which: Ints) -> Floats:
         """(folds,) weighted sum of squares of each fold under the fit on the others."""

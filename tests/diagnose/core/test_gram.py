@@ -152,3 +152,24 @@ def test_a_fit_beside_what_is_always_in_is_the_fit_on_both(seed):
         assert squares[i] == pytest.approx(gram.residual_square(base), rel=1e-9)
     assert (gains[0][[0, 1, 3]] == 0.0).all()
     np.testing.assert_allclose(tried.beside(which[:1]).tried(np.array([[2]]))[1], tried.tried(np.array([[3, 2]]))[1], rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_columns_that_nobody_sees_take_no_part_in_what_is_held_beside_others(seed):
+    """Of teeth that are not among the cells: fits and gains are those without these columns."""
+    columns, target, weight, fold = case(seed)
+    p = columns.shape[1]
+    place = 2 * np.arange(p)  # one of nothing behind each
+    wide = np.zeros((len(columns), 2 * p))
+    wide[:, place] = columns
+    few, many = (Gram.of(of, target, weight, fold, 5) for of in (columns, wide))
+    few_beside, beside = few.beside(np.array([0])), many.beside(np.array([1, 0, 3]), [place[[2]], np.array([1, place[3]])])
+    assert beside.information.shape == (p, p)
+    amplitudes, square = beside.fit(np.array([3, place[1], place[2]]))
+    assert amplitudes[0] == 0.0
+    expected = few_beside.fit(np.array([1, 2]))
+    np.testing.assert_allclose(amplitudes[1:], expected[0], rtol=1e-9)
+    assert square == pytest.approx(expected[1], rel=1e-9)
+    gains = few.gains(np.array([0, 1]), [np.array([2]), np.array([3])])
+    np.testing.assert_allclose(beside.tried(np.array([[5, place[1]]]))[1][0], gains, rtol=1e-6)
+    np.testing.assert_allclose(beside.beside(np.array([5, place[1]])).tried(np.zeros((1, 0), int))[1][0], gains, rtol=1e-6)
