@@ -121,7 +121,7 @@ class Explained:
     @cached_property
     def _with_own(self) -> FittedLevels:
         """With a depth of its own on every one of the low flanks."""
-        return _fitted(self.levels, self._columns, self._own)
+        return _fitted(self.levels, self._columns, self.low)
 
     @property
     def _own(self) -> Floats:
@@ -129,7 +129,7 @@ class Explained:
         own[list(self.low), np.arange(len(self.low))] = -1.0
         return own
 
-    @property
+    @cached_property
     def _columns(self) -> Floats:
         return np.hstack([self.levels.base, *(self.levels.terms[i].columns for i in self.terms)])
 
@@ -143,18 +143,19 @@ class Explained:
         halves = np.array(self.low) % self.levels.wide
         sides[list(self.low), halves] = -1.0
         numbers = np.bincount(halves, minlength=2)
-        same = _fitted(self.levels, self._columns, sides[:, numbers > 0])
+        same = _fitted(self.levels, np.hstack([self._columns, sides[:, numbers > 0]]))
         own_cost = self._with_own.misfit + free_penalty(len(self.low))
-        same_cost = same.misfit + free_penalty(int((numbers > 0).sum()))
+        kinds = int((numbers > 0).sum())
+        same_cost = same.misfit + free_penalty(kinds)
         which = sum(
             _choice(self.levels, np.array(self.low)[halves == half] // self.levels.wide) for half in np.flatnonzero(numbers)
         )
-        return min(own_cost, same_cost if min(same.lost) > 0.0 else math.inf) + which + priced
+        return min(own_cost, same_cost if min(same.amplitudes[-kinds:]) > 0.0 else math.inf) + which + priced
 
     @property
     def possible(self) -> bool:
         """Whether no flank has gained metal."""
-        return min(self._with_own.lost, default=1.0) > 0.0
+        return min(self._with_own.amplitudes[self._columns.shape[1] :], default=1.0) > 0.0
 
     @property
     def below(self) -> Floats:
@@ -201,16 +202,16 @@ class FittedLevels:
     ----------
     misfit : float
         −2 ln of the likelihood, up to a constant.
-    lost : tuple of float
-        Amplitudes of the last columns.
+    amplitudes : tuple of float
+        Of the columns, and depths of the flanks that have one of their own.
     rest : (w n,) float
-        Levels less everything but these.
+        Levels less the columns.
     scatter, root : (w, w) float
         Covariance of the levels of a tooth, and what makes of them numbers of variance 1 that are independent.
     """
 
     misfit: float
-    lost: tuple[float, ...]
+    amplitudes: tuple[float, ...]
     rest: Floats
     scatter: Floats
     root: Floats
@@ -227,25 +228,35 @@ def _scattered(levels: Levels, rest: Floats) -> Floats:
     return np.asarray(levels.weight * np.linalg.slogdet(moments)[1])
 
 
-def _fitted(levels: Levels, columns: Floats, own: Floats) -> FittedLevels:
-    """Least squares with the covariance of the levels of a tooth that is left over, not below what noise makes of them."""
-    every, number = np.hstack([columns, own, levels.value[:, None]]), levels.count
-    free = number - 0.5 * (every.shape[1] - 1)
-    scatter, root, misfit = np.eye(levels.wide), np.eye(levels.wide), math.inf
-    solved = np.zeros(every.shape[1] - 1)
+def _fitted(levels: Levels, columns: Floats, low: tuple[int, ...] = ()) -> FittedLevels:
+    """Least squares with the covariance of the levels of a tooth that is left over, not below what noise makes of them; some flanks have a depth of
+    their own. What such a flank adds to the sums is of its tooth alone."""
+    number, wide, shared, own = levels.count, levels.wide, columns.shape[1], np.array(low, dtype=np.int64)
+    every = np.column_stack([columns, levels.value])
+    tooth, half = np.divmod(own, wide)
+    of_one = tooth[:, None] == tooth
+    count = shared + len(own)
+    free = number - 0.5 * count
+    scatter, root, misfit = np.eye(wide), np.eye(wide), math.inf
+    gram, solved = np.empty((count, count)), np.zeros(count)
     for _ in range(REWEIGHTED if free >= FEWEST_FREE else 0):
-        white = _white(every, root)
-        gram = white.T @ white
-        moment, gram = gram[:-1, -1], gram[:-1, :-1]
-        gram[np.diag_indices_from(gram)] *= 1.0 + RIDGE
-        solved = np.linalg.solve(gram, moment)
-        left = (levels.value - every[:, :-1] @ solved).reshape(-1, levels.wide)
-        size, axes = np.linalg.eigh(left.T @ left / free)
-        kept = np.maximum(size, 1.0)
+        precision = root.T @ root
+        weighted = (precision @ every.reshape(number, wide, -1)).reshape(every.shape)
+        sums = every.T @ weighted
+        gram[:shared, :shared] = sums[:-1, :-1]
+        gram[shared:, :shared] = -weighted[own, :-1]
+        gram[:shared, shared:] = gram[shared:, :shared].T
+        gram[shared:, shared:] = precision[half[:, None], half] * of_one
+        gram.flat[:: count + 1] *= 1.0 + RIDGE
+        solved = np.linalg.solve(gram, np.concatenate([sums[:-1, -1], -weighted[own, -1]]))
+        left = levels.value - columns @ solved[:shared]
+        left[own] += solved[shared:]
+        by_tooth = left.reshape(-1, wide)
+        variance, axes = np.linalg.eigh(by_tooth.T @ by_tooth / free)
+        kept = np.maximum(variance, 1.0)
         scatter, root = (axes * kept) @ axes.T, (axes / np.sqrt(kept)).T
-        misfit = levels.weight * float((np.log(kept) + size / kept).sum())
-    lost, rest = tuple(solved[columns.shape[1] :].tolist()), levels.value - columns @ solved[: columns.shape[1]]
-    return FittedLevels(misfit, lost, rest, scatter, root)
+        misfit = levels.weight * float((np.log(kept) + variance / kept).sum())
+    return FittedLevels(misfit, tuple(solved.tolist()), levels.value - columns @ solved[:shared], scatter, root)
 
 
 def _choice(levels: Levels, places: Ints) -> float:

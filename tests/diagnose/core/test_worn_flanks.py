@@ -7,7 +7,7 @@ import pytest
 
 from gearwear.design.surface import locate
 from gearwear.diagnose.loop import close_loop, make_context
-from gearwear.diagnose.worn_flanks import Levels, low_flanks, waves
+from gearwear.diagnose.worn_flanks import Explained, Levels, low_flanks, waves
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
 from tests.synthetic import AbrasiveWear, Recipe, make_scan
@@ -144,3 +144,18 @@ def test_worn_flanks_at_even_steps_are_neither_waves_nor_effects(step):
     loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False))
     assert ([effect.name for effect in loop.effects], loop.patterns, loop.worn_sides, loop.others) == ([], (), frozenset(), ())
     assert [tuple(place) for place in np.argwhere(loop.worn_flanks)] == [(tooth, 0) for tooth in worn]
+
+
+def test_a_flank_with_a_depth_of_its_own_tells_nothing_else():
+    """However deep it lies, its depth takes it up: cost and what the other flanks show stay. Both flanks of tooth 3 are low."""
+    left, right = scatter(5, 20, index=0.004)
+    low = (4, 6, 7, 11, 30)
+    plain = Explained(levels(left, right), low=low)
+    moved = levels(left, right)
+    moved.value[list(low)] -= np.arange(1.0, 6.0) * 50.0
+    deep = Explained(moved, low=low)
+    others = np.setdiff1d(np.arange(20), np.array(low) // 2)
+    assert deep._with_own.misfit == pytest.approx(plain._with_own.misfit, rel=1e-6)
+    np.testing.assert_allclose(deep.below[others], plain.below[others], atol=1e-4)
+    sunk = np.subtract(deep._with_own.amplitudes, plain._with_own.amplitudes)
+    np.testing.assert_allclose(sunk, [0.0] * 4 + [50.0, 100.0, 150.0, 200.0, 250.0], atol=1e-4)
