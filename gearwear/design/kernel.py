@@ -328,7 +328,8 @@ def on_others(c, b):
         is_ = END_HIGH if at_high else (END_LOW if at_low else is_)
         inside = min(z - c.low_end, c.high_start - z)  # of the groove of a double helical gear
         in_groove = ((inside > 0.0) | ((inside >= outline) & (inside >= c.near))) & (is_ != BORE)
-        at_edge = (outline > -c.margin) & ((z < c.margin) | (z > w - c.margin))
+        of_outline = (outline > -c.margin) | ((is_ != END_LOW) & (is_ != END_HIGH) & (is_ != BORE))
+        at_edge = of_outline & ((z < c.margin) | (z > w - c.margin))
         d = z - w if at_high else (-z if at_low else outline)
         low = c.least[BORE] if at_bore else (c.least[TIP] if at_tip else (c.least[ROOT] if at_root else c.least[FLANK]))
         high = c.most[BORE] if at_bore else (c.most[TIP] if at_tip else (c.most[ROOT] if at_root else c.most[FLANK]))

@@ -371,7 +371,9 @@ def _end_there(gear: Gear, bands: Bands, z: Floats, found: _Outermost) -> None:
     edge = gear.spec.end_edge
     if edge > 0.0:
         margin = edge + bands.end_high[1]
-        surface[(outline > -margin) & ((z < margin) | (z > b - margin))] = OTHER
+        # Deep points of the outline too: of all that lie there these alone would be left, strays for the most part.
+        of_outline = (outline > -margin) | ~np.isin(surface, (END_LOW, END_HIGH, BORE))
+        surface[of_outline & ((z < margin) | (z > b - margin))] = OTHER
 
 
 def _in_groove(gear: Gear, z: Floats, outline: Floats, bands: Bands) -> Bools:

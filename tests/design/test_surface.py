@@ -1,6 +1,7 @@
 """`locate` undoes a known displacement along a known normal, on every surface."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -383,6 +384,16 @@ class TestChamfers:
         assert (locate(inside.position, gear).surface == FLANK).all()
         disc = np.column_stack([np.full(n, 12.0), np.linspace(-5.0, 5.0, n), np.full(n, 10.0 * end)])
         assert (locate(disc, gear).surface == (END_LOW, END_HIGH)[end]).all()
+
+    @pytest.mark.parametrize("end", [0, 1])
+    def test_points_far_below_an_end_chamfer_are_other_too(self, end):
+        """Of all points beside a chamfer those alone that lie deeper would be the flank's: strays, and wear where there is none."""
+        gear, n = self.gear, 15
+        bands = replace(Bands.wide(gear), end_low=(-0.05, 0.05), end_high=(-0.05, 0.05))
+        roll, side = np.linspace(gear.form_roll + 1.5, gear.tip_roll - 0.1, n), np.arange(n) % 2 * 2 - 1
+        for height, expected in ((0.3, OTHER), (0.7, FLANK)):
+            flank = flank_points(gear, np.arange(n), side, roll, np.full(n, abs(10.0 * end - height)))
+            assert (locate(flank.position - 0.7 * flank.normal, gear, bands).surface == expected).all()
 
 
 def test_surface_points_are_picked_by_mask_and_by_index(pinion):
