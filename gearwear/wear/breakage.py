@@ -198,13 +198,16 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
 
 
 def _usual_depth(index: Ints, points: Floats, tooth: Ints, gear: Gear) -> float:
-    """How deep typical teeth lie where these points of one do, mm: their edges may be rounded off as well; 0 where few were seen there."""
+    """How deep typical teeth lie where these points of one do, mm: their edges may be rounded off as well. Where few points of each were seen, all
+    together tell it; 0 where there are few of these too."""
     place = np.column_stack([points[:, 2], np.hypot(points[:, 0], points[:, 1])])
     low, high = place[index].min(axis=0), place[index].max(axis=0)
     there = np.flatnonzero(np.all((place >= low) & (place <= high), axis=1) & (tooth != tooth[index[0]]))
     depth, its = _depth_of_tooth(points[there], gear)[0], tooth[there]
     others = [float(np.quantile(depth[its == k], DEEP)) for k in np.unique(its) if (its == k).sum() >= FEWEST]
-    return max(float(np.median(others)), 0.0) if len(others) > 2 else 0.0
+    if len(others) > 2:
+        return max(float(np.median(others)), 0.0)
+    return max(float(np.quantile(depth, DEEP)), 0.0) if len(depth) >= FEWEST else 0.0
 
 
 def _together(points: Floats, gear: Gear) -> list[Ints]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
@@ -15,11 +17,17 @@ BOUNDS = 256
 def depth_inside(points: Floats, gear: Gear) -> tuple[Ints, Floats, Floats]:
     """Tooth (0-based), depth below the nearest nominal surface of the tooth (mm, negative outside), and place across its thickness (−1 … 1).
 
-    Below the form circle the flank goes on towards the fillet as the fillet's own half angle says; the root land is no surface of a tooth.
+    Below the form circle the flank goes on towards the fillet as the fillet's own half angle says; the root land is no surface of a tooth. Ends that the
+    drawing rounds are taken for chamfered, which takes more away.
     """
     radius, tooth, within = in_section(points, gear)
     half = np.maximum(half_angle_at(gear, radius, gear.root_radius), 1e-9)
-    depth = np.minimum(_below_flank(gear, half, within), _below_ends(points, radius, gear))
+    flank, ends = _below_flank(gear, half, within), _below_ends(points, radius, gear)
+    depth = np.minimum(flank, ends)
+    if gear.spec.end_edge > 0.0:
+        outline = np.minimum(flank, -above_circle(gear, radius, gear.tip_radius))
+        from_face = np.minimum(points[:, 2], gear.face_width - points[:, 2])
+        depth = np.minimum(depth, math.sqrt(0.5) * (outline + from_face - gear.spec.end_edge))
     depth = np.where(above_circle(gear, radius, gear.root_radius) > 0.0, depth, -1.0)
     return tooth, depth, within / half
 

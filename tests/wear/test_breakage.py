@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.gear import Gear
-from gearwear.design.surface import locate
+from gearwear.design.surface import flank_points, locate
 from gearwear.placing.cells import CellGrid
 from gearwear.wear.breakage import broken_sentences, find_fractures, measure_broken, with_borders, without_broken
 from gearwear.wear.inside_tooth import depth_inside
@@ -96,6 +96,26 @@ def test_teeth_that_were_not_seen_are_not_called_missing(unseen):
         assert math.isnan(piece.volume) and not piece.flank_gone.any()
     (said,) = broken_sentences(broken)
     assert said.startswith("tooth 5 was not seen" if len(unseen) == 1 else "teeth 2 to 8 and 10 were not seen")
+
+
+def test_an_end_chamfer_that_is_not_drawn_is_no_fracture_where_few_points_of_each_tooth_show_it():
+    """0.8 mm at 45 degrees all round: of eleven teeth six points lie there, of the other eight, each to 0.4 mm inside the drawn tooth."""
+    scan = make_scan(Recipe(jitter=1.0, pose="none").of_size(20_000), 5)
+    points = true_pose(scan).apply(scan.points)
+    points = points[points[:, 2] > 0.8]
+
+    def chamfer(tooth, number):
+        height = np.linspace(0.36, 0.44, number)
+        roll = np.linspace(12.0, 12.3, number)
+        flank = flank_points(GEAR, np.full(number, tooth), np.ones(number, dtype=int), roll, np.full(number, 5.0))
+        at = flank.position - (0.8 - height)[:, None] * flank.normal
+        at[:, 2] = height
+        return at
+
+    eight, six = chamfer(0, 8), [chamfer(tooth, 6) for tooth in range(1, 12)]
+    alone = find_fractures(np.vstack([points, eight]), GEAR)
+    assert [(tooth, len(index)) for tooth, index in alone] == [(0, 8)]
+    assert find_fractures(np.vstack([points, eight, *six]), GEAR) == []
 
 
 def test_a_root_land_that_lies_high_is_no_fracture():

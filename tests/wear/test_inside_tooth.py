@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearwear.design import Gear, GearSpec
+from gearwear.design.surface import flank_points
 from gearwear.wear.inside_tooth import depth_inside, perhaps_inside
 from tests.placing.placing import designed
 from tests.synthetic import GearNumbers, Recipe, make_scan
@@ -50,3 +51,22 @@ def test_a_bevel_of_the_tip_is_no_place_inside():
     assert on_bevel.sum() > 500
     assert depth_inside(points[on_bevel], sharp)[1].max() > 0.1
     assert np.abs(depth_inside(points[on_bevel], gear)[1]).max() < 0.03
+
+
+@pytest.mark.parametrize("key", ["end_chamfer", "end_rounding"])
+def test_an_end_edge_as_drawn_is_no_place_inside(key):
+    """On a chamfer of 0.4 mm points lie to 0.2 mm below flank and end both: on the plane through its edges they are on the surface, and 0.3 mm under
+    it they are as deep as that. A rounding lies outside that plane."""
+    size = 0.4
+    sharp, gear = Gear.from_spec(GEARS["spur"]), Gear.from_spec(replace(GEARS["spur"], **{key: size}))
+    roll, share = np.linspace(gear.form_roll + 1.0, gear.tip_roll - 1.5, 36), np.tile(np.linspace(0.1, 0.9, 9), 4)
+    number, sides = np.arange(36) % gear.teeth, np.arange(36) % 2 * 2 - 1
+    for end in (0, 1):
+        height = share * size
+        flank = flank_points(gear, number, sides, roll, np.full(36, 5.0))
+        points = flank.position - ((1.0 - share) * size)[:, None] * flank.normal
+        points[:, 2] = np.where(end, gear.face_width - height, height)
+        assert depth_inside(points, sharp)[1].max() == pytest.approx(0.5 * size)
+        np.testing.assert_allclose(depth_inside(points, gear)[1], 0.0, atol=1e-9)
+        under = points - 0.3 * np.sqrt(0.5) * (flank.normal + np.array([0.0, 0.0, 1.0 if end else -1.0]))
+        np.testing.assert_allclose(depth_inside(under, gear)[1], np.minimum(0.3, depth_inside(under, sharp)[1]), atol=1e-9)
