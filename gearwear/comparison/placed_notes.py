@@ -23,6 +23,11 @@ from gearwear.placing.views import PlacedScan
 SHARED = 0.7
 """Variance of neighbours' differences, in that within a patch, below which points share their errors. Of eleven smoothed scans of the families the
 greatest is 0.62, and of 20 that were not the least 0.78, of one with a short texture."""
+ALONE = (
+    "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out, and flanks are taken not to slide at"
+    " the reference circle"
+)
+"""Where the pair's profile shifts do not sum to zero they slide there, and wear of a whole side has another shape than the one looked for."""
 SMOOTHED = "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are"
 
 

@@ -18,6 +18,7 @@ from gearwear.comparison.consequences import Change, meshing_changes, thickness_
 from gearwear.comparison.contributions import PutBack, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.comparison.open_volume import even_loss, level_open
+from gearwear.comparison.placed_notes import ALONE
 from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
@@ -67,7 +68,6 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
 DRAWS = 64
 """Worn surfaces drawn to see how far their scatter moves the contact."""
-ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 HALVES = "double helical: taper, twist and feed marks are not looked for; the halves are inspected one by one"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 SECTION_WEIGHED = "[weighing] is left out: the gear was weighed, but a planar section has no volume"

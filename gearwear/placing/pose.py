@@ -65,6 +65,11 @@ def small_motion(motion: Floats) -> Pose:
     return Pose(rotation, t)
 
 
+def size_of_motion(motion: Floats, radius: float) -> float:
+    """How far a small motion, or the standard deviations of one (tx, ty, tz in mm, wx, wy, wz in rad), carries points at a radius at most, mm."""
+    return float(np.linalg.norm(motion[:3]) + radius * np.linalg.norm(motion[3:]))
+
+
 def about_z(angle: float) -> Pose:
     """Rotation about the axis by `angle` rad."""
     return small_motion(np.array([0.0, 0.0, 0.0, 0.0, 0.0, angle]))

@@ -30,7 +30,7 @@ from gearwear.placing.coarse import (
     take_sample,
 )
 from gearwear.placing.datum import Datum, choose_datum
-from gearwear.placing.pose import Pose, along_screw, flip, least_turn, motion_columns, small_motion
+from gearwear.placing.pose import Pose, along_screw, flip, least_turn, motion_columns, size_of_motion, small_motion
 from gearwear.placing.screw import helical_axes
 from gearwear.processors import each
 from gearwear.robust import median_scale, tukey_slope, tukey_weight
@@ -39,8 +39,8 @@ QUICK_FIT_POINTS, SETTLING_POINTS = 5000, 40000
 """Points of the thinned scans that choose a candidate and settle it."""
 MAX_QUICK_COST = 0.25
 """Cost of a quick fit above which other starts are tried."""
-MAX_LAST_STEP_MODULES = 2e-4
-"""Last step, in modules, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
+LAST_STEP = 2e-4, 0.1
+"""Last step, in modules or in how well the pose is known, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
 REPEATED_TO_MODULES = 1e-6
 """Last step, in modules, from which on no other pass follows (6 nm at module 6.35; each is a thirtieth of the one before or less): the pose is then the
 part's own, wherever the search began, and what hangs on it goes no other way for where the gear lay."""
@@ -251,7 +251,7 @@ def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: flo
     full = np.zeros(6)
     full[free] = motion[:-1]
     limit = 0.2 * gear.transverse_module  # a step this far is a guess, not a correction
-    size = float(np.linalg.norm(full[:3]) + gear.tip_radius * np.linalg.norm(full[3:]))
+    size = size_of_motion(full, gear.tip_radius)
     if size > limit:
         full *= limit / size
     return pose.then(small_motion(full)), size
@@ -381,7 +381,8 @@ def _known(pose: Pose, cells: Cells, datum: Datum, free: Bools, fit: CellFit, ba
         if has_screw(gear):
             height += "; along helical teeth height and turn go together, and the turn is stated for this height"
         unseen.append(height)
-    converged = bool(fit.step < MAX_LAST_STEP_MODULES * gear.transverse_module)
+    known = size_of_motion(np.sqrt(np.diag(covariance)), gear.tip_radius)
+    converged = bool(fit.step < max(LAST_STEP[0] * gear.transverse_module, LAST_STEP[1] * known))
     if not converged:
         unsettled.insert(0, f"the registration did not settle: the last step was {1e3 * fit.step:.2f} µm")
     return Registration(
@@ -543,6 +544,4 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> CellFit:
     motion, covariance = np.zeros(6), np.zeros((6, 6))
     motion[free] = -solution[:moving]
     covariance[np.ix_(free, free)] = sandwich[:moving, :moving]
-    radius = cells.grid.gear.tip_radius
-    step = float(np.linalg.norm(motion[:3]) + radius * np.linalg.norm(motion[3:]))
-    return CellFit(motion, covariance, float(solution[moving]), step)
+    return CellFit(motion, covariance, float(solution[moving]), size_of_motion(motion, cells.grid.gear.tip_radius))

@@ -160,7 +160,7 @@ def _best(profile: Floats, use: Bools, grid: CellGrid, loop: Loop, hump: bool) -
             if hump and not value[3] > 0.0:
                 continue
             left = float(((profile[use] - design @ value) ** 2).sum())
-            stds = np.sqrt(np.diag(np.linalg.pinv(design.T @ design)))
+            stds = np.sqrt(np.maximum(np.diag(np.linalg.pinv(design.T @ design)), 0.0))  # of columns alike rounding leaves less
             free = int(use.sum()) - int(rank) - hump  # the width is a number too
             fits.append(_Profile(left, free, float(value[0]), float(stds[0]), float(value[3]), float(stds[3]), columns[3]))
     return min(fits, key=lambda fit: fit.left, default=None)

@@ -9,9 +9,9 @@ from tempfile import mkdtemp
 import numpy as np
 
 import gearwear as gw
-from gearwear.comparison.placed_notes import SMOOTHED, smoothing_of
+from gearwear.comparison.placed_notes import ALONE, SMOOTHED, smoothing_of
 from gearwear.comparison.results import Results
-from gearwear.comparison.stations import ALONE, compare
+from gearwear.comparison.stations import compare
 from gearwear.report.words.terminal import lines
 from gearwear.report.words.verdict import doubts
 from tests.placing.test_smoothing import flanks, form, smoothed

@@ -3,14 +3,18 @@
 import itertools
 import math
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
-from gearwear.design.surface import BORE, END_HIGH, END_LOW, TIP, locate
+from gearwear.design.surface import BORE, END_HIGH, END_LOW, TIP, Bands, locate
 from gearwear.errors import InputError
-from gearwear.placing.registration import Registration, register
+from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.placing.datum import choose_datum
+from gearwear.placing.pose import Pose
+from gearwear.placing.registration import Registration, _known, fit_cells, register
 from tests.placing.placing import designed, motion_off, refined, true_pose
 from tests.synthetic import (
     PINION,
@@ -289,6 +293,24 @@ def test_lines_of_points_far_from_each_other(numbers):
     scan = make_scan(Recipe(numbers, pose="any", noise_um=6.0).of_size(6_000), 5)
     gear = designed(numbers)
     assert (np.abs(pulls(scan, register(scan.points, gear), gear)) < SURE).all()
+
+
+@pytest.mark.parametrize(("module", "noise_um"), [(0.28, 2.0), (6.35, 10.0)])
+def test_a_last_step_that_is_nothing_beside_what_the_pose_is_known_to_is_settled(module, noise_um):
+    """0.07 µm were much for teeth of module 0.28, whose pose was known to 2 µm."""
+    gear = designed(GearNumbers(13, module, 3.0 * module))
+    scan = make_scan(Recipe(GearNumbers(13, module, 3.0 * module), pose="none", jitter=1.0, noise_um=noise_um).of_size(20_000), 6)
+    located = locate(scan.points, gear)
+    cells = bin_points(located, CellGrid.for_scan(gear, len(located)), clip=0.04 * module)
+    datum, free = choose_datum(cells, 1e-3 * noise_um), np.ones(6, dtype=bool)
+    fit = fit_cells(cells, datum, free)
+    std = np.sqrt(np.diag(fit.covariance))
+    known = math.hypot(*std[:3]) + gear.tip_radius * math.hypot(*std[3:])  # of a point of the tip circle
+    least = max(0.1 * known, 2e-4 * module)
+    for share in (0.95, 1.05):
+        found = _known(Pose.identity(), cells, datum, free, replace(fit, step=share * least), Bands.wide(gear), 1.0)
+        assert found.converged is (share < 1.0)
+        assert any("did not settle" in note for note in found.notes) is (share > 1.0)
 
 
 NOT_THIS_GEAR = {
