@@ -16,7 +16,8 @@ from gearwear.errors import InputError
 if TYPE_CHECKING:
     from gearwear.design.gear import Gear
     from gearwear.identify.candidates import SurfaceLeft
-    from gearwear.identify.proposal import Gauge, Helix, Proposal
+    from gearwear.identify.gauges import Gauge, Helix
+    from gearwear.identify.proposal import Proposal
     from gearwear.identify.survey import Survey
 
 DESCRIPTION = """\
@@ -116,7 +117,7 @@ def _angle(arguments: Namespace) -> float | None:
 
 def _helix(arguments: Namespace) -> Helix | None:
     from gearwear.design.spec import MOST_HELIX_DEGREES
-    from gearwear.identify.proposal import Helix
+    from gearwear.identify.gauges import Helix
 
     if arguments.helix_angle is None:
         return None
@@ -131,7 +132,8 @@ def _from_numbers(arguments: Namespace) -> tuple[str, str]:
     """TOML and one line on it, from dimensions."""
     from gearwear.design.files.writing import design_text
     from gearwear.design.gear import Gear
-    from gearwear.identify.proposal import SPUR, Gauge, Measured, propose, spec_of, tells_angle, tells_thickness
+    from gearwear.identify.gauges import SPUR, Gauge, Measured
+    from gearwear.identify.proposal import propose, spec_of, tells_angle, tells_thickness
     from gearwear.scan.units import factor
 
     if arguments.teeth is None:

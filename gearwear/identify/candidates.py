@@ -14,7 +14,8 @@ from gearwear.design.gear import Gear
 from gearwear.design.standards import FRACTION, MM_PER_INCH, diametral_pitch
 from gearwear.design.surface import END_LOW, FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints, locate
 from gearwear.errors import InputError
-from gearwear.identify.proposal import SPUR, Gauge, Helix, Measured, Proposal, check_known, propose, spec_of
+from gearwear.identify.gauges import SPUR, Gauge, Helix, Measured
+from gearwear.identify.proposal import Proposal, check_known, propose, spec_of
 from gearwear.identify.survey import PROFILE_SLOPE, Survey, survey
 from gearwear.placing.registration import Registration, register
 from gearwear.robust import median_scale, scale_about
@@ -30,6 +31,8 @@ SCALE_DOUBT, BASE_PITCH_DOUBT, THICKNESS_DOUBT = 0.001, 0.003, 0.004
 """Relative standard deviations of what an unknown scanner shows: diameters, base pitch (profile slope), thickness (coat, zero)."""
 FACE_DOUBT = 0.01
 """mm; standard deviation of a length between two surfaces, as a scanner's coat and zero leave it."""
+WHOLE = 2.0
+"""Standard deviations of a length within which it is a whole number of mm: face width and bore then gauge the scale."""
 HELIX_SLOPE = 0.012
 """mm; helix slope deviation of usual gears: over the face width it cannot be told from another helix angle."""
 RIM_TOLERANCE = 0.012, 0.02
@@ -190,7 +193,8 @@ def find_candidates(
         raise InputError(f"teeth = {teeth}: the scan shows {seen.teeth} teeth")
     gauges = _gauges(seen)
     candidates = []
-    doubt = max(SCALE, 0.5 * seen.oval)
+    # A known scale is no unknown: what is left of its doubt is in the dimensions.
+    doubt = max(SCALE, 0.5 * seen.oval) if math.isinf(_gauged_scale(seen)) else 0.0
     for proposal in propose(
         seen.teeth, gauges, module, pressure_angle, doubt, helix=helix or _helix(seen), internal=seen.internal
     ):
@@ -238,6 +242,17 @@ def _groove(seen: Survey) -> float:
     return max(_rounded_length(seen.gap, seen.faces), LEAST_GROOVE)
 
 
+def _gauged_scale(seen: Survey) -> float:
+    """Relative standard deviation of the scale by face width and bore; infinite where they are not both whole numbers of mm.
+
+    One length alone is a whole number by chance on one scan in twenty-five, and a coat makes the width larger and the bore smaller.
+    """
+    lengths = (seen.face_width, seen.bore_diameter)
+    whole = all(length > 1.0 and abs(length - round(length)) < WHOLE * FACE_DOUBT for length in lengths)
+    known = FACE_DOUBT / math.hypot(*lengths) if whole else math.inf
+    return known if seen.faces == 2 and not seen.oval and known < 0.5 * SCALE_DOUBT else math.inf
+
+
 def base_pitch_doubt(seen: Survey) -> float:
     """Standard deviation of the base pitch of the design by what the flanks show, mm: the scanner's, and a profile slope of usual size."""
     return seen.base_pitch * math.hypot(BASE_PITCH_DOUBT, PROFILE_SLOPE / seen.flank.roll)
@@ -247,15 +262,14 @@ def _gauges(seen: Survey) -> tuple[Gauge, ...]:
     """The survey as dimensions with what an unknown scanner may do to them."""
     flank = seen.flank
     least, lost = flank.scatter, max(half.worn_scatter for half in seen.halves)
+    scale = min(SCALE_DOUBT, _gauged_scale(seen))
 
     def length(value: float, relative: float, floor: float) -> Measured:
-        return Measured(value, math.hypot(relative * value, floor))
+        return Measured(value, math.hypot(relative * value, floor), relative)
 
-    root = Gauge(
-        "root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, math.hypot(RIM_TOLERANCE[1], 2.0 * seen.root_scatter))
-    )
+    root = Gauge("root_diameter", length(2.0 * seen.root_radius, scale, math.hypot(RIM_TOLERANCE[1], 2.0 * seen.root_scatter)))
     return (
-        Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[0]))),
+        Gauge("tip_diameter", length(2.0 * seen.tip_radius, scale, max(least, RIM_TOLERANCE[0]))),
         *([root] if math.isfinite(seen.root_scatter) else []),
         Gauge("base_pitch", Measured(seen.base_pitch, base_pitch_doubt(seen))),
         # What a worn side lost on average is missing from the thickness, and not known: about what it scatters by.

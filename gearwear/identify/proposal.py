@@ -18,9 +18,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from gearwear.design.involute import involute_function
-from gearwear.design.spec import FEWEST_TEETH, MOST_HELIX_DEGREES, MOST_TEETH, GearSpec, shown
+from gearwear.design.spec import FEWEST_TEETH, MOST_TEETH, GearSpec, shown
 from gearwear.design.standards import ANGLES, DEPTHS, RING_DEPTHS, Depth, Module, modules_near
 from gearwear.errors import InputError
+from gearwear.identify.gauges import SPUR, Gauge, Helix
 from gearwear.identify.unknowns import (
     COAT,
     ROUND_GAIN,
@@ -30,8 +31,10 @@ from gearwear.identify.unknowns import (
     SHIFT_WIDTH,
     SHORTENING,
     THINNING,
+    Fitted,
     Row,
     fit,
+    round_price,
     shift_std,
     solved,
     with_round_shift,
@@ -45,86 +48,12 @@ FREE_MODULE = 20.0
 """Rarity of a module that is in no series."""
 ROUNDING = 1e-6
 """Of costs: by so much a least one may seem too high."""
-DRAWN_ANGLES = (1.0, 0.5, 0.01)
-"""Degrees, of which a drawn helix angle is a multiple where a scan leaves room for it."""
+OFF = 3.0
+"""Own standard deviations of tip and root beyond which both are off, and within which they are so by the same amount."""
 MODULE_RANGE = (1e-3, 1e3)
 """mm; what a design may have."""
 ANGLE_RANGE = (5.0, 45.0)
 """Degrees; what a design may have."""
-
-
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """A length and its standard deviation, mm."""
-
-    value: float
-    std: float
-
-
-@dataclass(frozen=True, slots=True)
-class Helix:
-    """What is known of the helix of a gear, rad, + right hand.
-
-    Parameters
-    ----------
-    angle : float
-        β at the reference circle; where `at_base`, β_b at the base circle, as a scan shows it without a pressure angle.
-    std : float
-        Its standard deviation; 0 where it is stated.
-    at_base : bool
-    """
-
-    angle: float = 0.0
-    std: float = 0.0
-    at_base: bool = False
-
-    def at_reference(self, pressure_angle: float) -> float | None:
-        """β for a normal pressure angle, sin β = sin β_b / cos α_n; as a drawing would have it, where that is as likely. None: impossible."""
-        if not self.at_base:
-            return self.angle
-        sine = math.sin(self.angle) / math.cos(pressure_angle)
-        if not abs(sine) < math.sin(math.radians(MOST_HELIX_DEGREES)):
-            return None
-        degrees = math.degrees(math.asin(sine))
-        for step in DRAWN_ANGLES:
-            drawn = round(degrees / step) * step
-            if abs(drawn - degrees) < 2.0 * math.degrees(self.std):
-                return math.radians(round(drawn, 9))
-        return math.radians(round(degrees, 3))
-
-
-SPUR = Helix()
-"""No helix."""
-
-
-@dataclass(frozen=True, slots=True)
-class Gauge:
-    """One measured dimension of a gear.
-
-    Parameters
-    ----------
-    kind : str
-        "tip_diameter", "root_diameter", "span", "over_pins", "thickness" or "base_pitch"; the latter two in the transverse section, over
-        balls in one plane where the teeth are helical.
-    length : Measured
-        mm.
-    at : float
-        Span: teeth spanned. Over pins: pin diameter in mm. Thickness: diameter in mm at which the arc is measured. Else not used.
-    """
-
-    kind: str
-    length: Measured
-    at: float = 0.0
-
-    @property
-    def name(self) -> str:
-        """What it is, for people."""
-        label = self.kind.replace("_", " ")
-        return {
-            "span": f"span over {self.at:g} teeth",
-            "over_pins": f"over {self.at:g} mm pins",
-            "thickness": f"tooth thickness at diameter {self.at:.2f} mm",
-        }.get(self.kind, label)
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +173,8 @@ def propose(
     pressure_angle : float or None
         rad, where it is known; None: those in use.
     scale_doubt : float or None
-        Relative standard deviation of the scale of a scan, whose surfaces may also lie too high; None: not a scan.
+        Relative standard deviation of the scale of a scan, whose surfaces may also lie too high; 0: of a scan of known scale;
+        None: not a scan.
     most : int
         How many to return.
     helix : Helix
@@ -256,7 +186,8 @@ def propose(
     -------
     tuple of Proposal
         Best first; a module and pressure angle appear once. Of a scan the best is followed by itself with the round profile shift next to its
-        own, where the dimensions hardly tell the two apart.
+        own, where the dimensions hardly tell the two apart, and with any shift where a round one leaves
+        tip and root off by the same radial amount; that one comes first where it costs less, its price included.
 
     Raises
     ------
@@ -285,6 +216,7 @@ def propose(
         choices += [(*choice, THINNING) for choice in choices]
     if scale_doubt is not None:
         choices += [(*choice, COAT) for choice in choices]
+    if scale_doubt:
         choices += [(*choice, SCALE) for choice in choices]
     likely = list[_Likely]()
     for angle, rarity in angles:
@@ -328,8 +260,12 @@ def propose(
     if not proposals:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
     ranked = sorted(proposals.values(), key=lambda proposal: proposal.cost)[:most]
-    other = None if scale_doubt is None else _other_shift(ranked[0], gauges, choices, scale_doubt)
-    return (ranked[0], *([] if other is None else [other]), *ranked[1:])
+    if scale_doubt is None:
+        return tuple(ranked)
+    other = _other_shift(ranked[0], gauges, choices, scale_doubt)
+    followed = [*([] if other is None else [other]), *ranked[1:]]
+    two = _free_shift(ranked[0], gauges, choices, scale_doubt)
+    return tuple(sorted((*two, *followed), key=lambda proposal: proposal.cost)) if two else (ranked[0], *followed)
 
 
 def spec_of(proposal: Proposal, face_width: float, body_diameter: float = 0.0, name: str = "gear", gap: float = 0.0) -> GearSpec:
@@ -485,6 +421,56 @@ def _other_shift(
                     residuals=held[1], cost=max(cost, best.cost),
                 ), cost  # fmt: skip
     return nearest
+
+
+def _free_shift(
+    best: Proposal, gauges: Sequence[Gauge], choices: Sequence[tuple[int, ...]], scale_doubt: float
+) -> tuple[Proposal, ...]:
+    """The best proposal of a scan, at what a round shift of its costs, and the best one with any shift; none unless tip and root are off alike.
+
+    Both lie as far out, or in, beyond what they are known to on a scan of true scale: that another scale would do it too is no reason.
+    """
+    off = {
+        gauge.kind: (residual + best.scale * gauge.length.value, gauge.length.own_std)
+        for gauge, residual in zip(gauges, best.residuals, strict=True)
+    }
+    if not {"tip_diameter", "root_diameter"} <= off.keys():
+        return ()
+    (tip, tip_std), (root, root_std) = off["tip_diameter"], off["root_diameter"]
+    far = tip * root > 0.0 and abs(tip) > OFF * tip_std and abs(root) > OFF * root_std
+    if not far or abs(tip - root) > OFF * math.hypot(tip_std, root_std):
+        return ()
+    m, angle, beta = best.module.mm, best.pressure_angle, best.helix_angle
+    rarity = best.module.rarity + dict(ANGLES).get(angle, 0.0)
+    fits = list[tuple[float, Depth, Fitted]]()
+    held = best.cost
+    for depth in _depths(best.internal):
+        rows = [row for gauge in gauges if (row := _row(best.teeth, gauge, m, angle, depth, beta, best.internal)) is not None]
+        for free in choices:
+            if SHIFT not in free and depth is best.depth:
+                fitted = fit(rows, m, free, scale_doubt, best.profile_shift)
+                price = round_price(best.profile_shift)
+                if fitted is not None and fitted[0] == _unknowns(best) and (price or not best.profile_shift):
+                    held = max(held, fitted[2] + rarity + depth.rarity + price)
+            elif SHIFT in free and COAT not in free and SCALE not in free:  # either explains the same
+                fitted = fit(rows, m, free, scale_doubt)
+                if fitted is not None:
+                    fits.append((fitted[2] + rarity + depth.rarity, depth, fitted))
+    if not fits:
+        return ()
+    cost, depth, (values, residuals, _) = min(fits, key=lambda one: one[0])
+    if values == _unknowns(best):
+        return ()
+    shift, thinning, shortening, coat, scale = values
+    other = replace(
+        best, depth=depth, profile_shift=shift, thinning=thinning, shortening=shortening, coat=coat, scale=scale,
+        residuals=residuals, cost=cost,
+    )  # fmt: skip
+    return replace(best, cost=held), other
+
+
+def _unknowns(proposal: Proposal) -> tuple[float, float, float, float, float]:
+    return proposal.profile_shift, proposal.thinning, proposal.shortening, proposal.coat, proposal.scale
 
 
 class _Likely(NamedTuple):

@@ -93,3 +93,11 @@ def with_round_shift(rows: Sequence[Row], module: float, free: tuple[int, ...], 
             if cost < least:
                 best, least = (*held[:2], min(cost, fitted[2])), cost
     return best
+
+
+def round_price(shift: float) -> float:
+    """What a profile shift costs that is held to a tenth of a module or to a quarter; 0 without one, and of one that is not."""
+    for parts, many in ((10, ROUND_SHIFTS), (4, 2 * ROUND_SHIFTS)):
+        if shift != 0.0 and shift == round(parts * shift) / parts:
+            return 2.0 * math.log(many) + (shift / SHIFT_WIDTH) ** 2
+    return 0.0

@@ -13,7 +13,8 @@ from gearwear.design.files.writing import design_text
 from gearwear.design.standards import DIAMETRAL_PITCHES, FIRST_SERIES, SECOND_SERIES, modules_near
 from gearwear.errors import InputError
 from gearwear.identify.candidates import find_candidates
-from gearwear.identify.proposal import Gauge, Helix, Measured, propose, spec_of
+from gearwear.identify.gauges import Gauge, Helix, Measured
+from gearwear.identify.proposal import propose, spec_of
 from gearwear.inspection.dimensions import over_pins, span
 
 
@@ -290,3 +291,32 @@ def test_a_quarter_is_a_round_shift_too():
         scale_doubt=0.001,
     )
     assert found.profile_shift == 0.25
+
+
+@pytest.mark.parametrize("out", [0.12, -0.12])
+def test_tip_and_root_off_alike_bring_the_gear_of_another_shift(out):
+    """Both 3 % of a module further out than by a shift of 0.4; either alone is another matter."""
+    gear = Gear.from_spec(GearSpec("gear", 23, 4.0, 25.0, profile_shift=0.4))
+
+    def shifts(tip, root, own=0.02):
+        scale = 0.001  # as an unknown scanner leaves diameters
+        sized = (("tip_diameter", 2.0 * gear.tip_radius + tip), ("root_diameter", 2.0 * gear.root_radius + root))
+        found = propose(
+            23,
+            [
+                *(Gauge(kind, Measured(value, math.hypot(scale * value, own), scale)) for kind, value in sized),
+                gauge("base_pitch", gear.base_pitch, std=0.03),
+            ],
+            scale_doubt=0.002,
+        )
+        return [
+            (one.profile_shift, one.cost) for one in found if (one.module.mm, one.pressure_angle) == (4.0, math.radians(20.0))
+        ]
+
+    both = shifts(2.0 * out, 2.0 * out)
+    assert 0.4 in [shift for shift, _ in both]
+    # dr = m dx; a prior of 0.4 draws the shift by less than 0.01 towards 0.
+    assert any(shift == pytest.approx(0.4 + out / 4.0, abs=0.01) for shift, _ in both)
+    assert [cost for _, cost in both] == sorted(cost for _, cost in both)
+    for other in (shifts(2.0 * out, 0.0), shifts(2.0 * out, 2.0 * out, own=0.1)):
+        assert not any(shift == pytest.approx(0.4 + out / 4.0, abs=0.01) for shift, _ in other)

@@ -1,12 +1,14 @@
 """Gears found in scans without a design, against what the generator put in."""
 
 import math
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from gearwear.cli import main
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.identify.candidates import UNKNOWN_WIDTH, _rounded_width, find_candidates
@@ -107,6 +109,43 @@ def test_the_best_candidate_is_the_gear_that_was_made(name):
 def test_coat_and_scale_of_the_scan_are_not_the_gears():
     numbers = GearNumbers(24, 2.5, 15.0)
     effects = (Effect("coating", {"thickness_um": 25.0}), Effect("scale", {"relative_ppm": 2500.0}))
+    made = make_scan(Recipe(gear=numbers, pose="any", noise_um=5.0, jitter=1.0, effects=effects).of_size(25_000), 2)
+    best = find_candidates(made.points).ranked[0].proposal
+    assert (best.module.mm, best.profile_shift, best.thinning) == (2.5, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("bore", [32.0, 0.0])
+@pytest.mark.parametrize(
+    "numbers",
+    [
+        GearNumbers(23, 4.0, 25.0, profile_shift=0.37, thinning=0.09),
+        GearNumbers(31, 2.5, 20.0, profile_shift=0.23, thinning=0.07),
+    ],
+    ids=["0.37", "0.23"],
+)
+def test_a_shift_that_is_not_round_is_offered(numbers, bore, tmp_path):
+    """Tip and root tell it; a round shift, or a scale that width and bore gainsay, does not hide it."""
+    recipe = Recipe(gear=replace(numbers, bore_diameter=bore), pose="any", noise_um=NOISE, jitter=1.0)
+    made = make_scan(recipe.of_size(25_000), 3)
+    ranked = find_candidates(made.points).ranked
+    same = [one.proposal for one in ranked if one.proposal.module.mm == numbers.module and one.proposal.pressure_angle < 0.36]
+    free = [one for one in same if one.profile_shift == pytest.approx(numbers.profile_shift, abs=0.005)]
+    assert free and max(abs(residual) for residual in free[0].residuals[:2]) < 0.025
+    assert free[0].thinning == pytest.approx(numbers.thinning, abs=0.02)
+    if bore:
+        assert ranked[0].proposal is free[0]
+        assert all(one.scale == 0.0 for one in same)
+    np.savetxt(tmp_path / "scan.xyz", made.points, fmt="%.4f")
+    assert main(["design", str(tmp_path / "scan.xyz"), "--out", str(tmp_path / "x.toml")]) == 0
+    text = (tmp_path / "x.toml").read_text(encoding="utf-8")
+    assert f"shift {free[0].profile_shift:+.3f}" in text
+    assert bore or "Nothing else in use comes near" not in text
+
+
+def test_a_wrong_scale_is_found_beside_a_bore():
+    """Its width and bore are whole numbers in the drawing, and not in the scan."""
+    numbers = GearNumbers(24, 2.5, 20.0, bore_diameter=30.0)
+    effects = (Effect("scale", {"relative_ppm": 2500.0}),)
     made = make_scan(Recipe(gear=numbers, pose="any", noise_um=5.0, jitter=1.0, effects=effects).of_size(25_000), 2)
     best = find_candidates(made.points).ranked[0].proposal
     assert (best.module.mm, best.profile_shift, best.thinning) == (2.5, 0.0, 0.0)
