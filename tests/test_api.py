@@ -373,7 +373,7 @@ ROUND = np.column_stack([np.cos(np.arange(500.0)), np.sin(np.arange(500.0)), np.
         (lambda: turned(positions_per_pitch=3.5), "positions_per_pitch = 3.5: a whole number from 1 up would be right"),
         (lambda: turned(positions_per_pitch=0), "positions_per_pitch = 0: a whole number from 1 up would be right"),
         (lambda: turned(start_tooth=1.5), "start_tooth = 1.5: a whole number would be right"),
-        (lambda: turned(tolerances=()), r"tolerances \(\): at least one, and none negative, would be right"),
+        (lambda: turned(tolerances=()), r"tolerances \(\): a sequence of one or more would be right"),
         (lambda: turned(drive_side="up"), "side 'up': gw.Side.LEFT"),
         (lambda: loaded(cycle="x"), f"cycle = 'x': {CYCLES}"),
         (lambda: loaded(start_tooth=True), "start_tooth = True: a whole number would be right"),

@@ -196,6 +196,7 @@ def propose(
 
     Examples
     --------
+    >>> from gearwear.identify.gauges import Measured
     >>> best = propose(12, [Gauge("tip_diameter", Measured(88.9, 0.05)), Gauge("root_diameter", Measured(60.3, 0.05))])[0]
     >>> best.name
     'diametral pitch 4 (module 6.35), 20°'

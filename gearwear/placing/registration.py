@@ -324,6 +324,8 @@ def refine(
     bands = narrowed_bands(located, gear)
     if not planar and gear.spec.gap == 0.0 and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
         pose = _centred(located, gear, pose)
+        located = locate(pose.apply(points), gear)  # ends that lay farther off than such points count are seen now
+        fitting, bands = _check_fit(located, points, gear, planar), narrowed_bands(located, gear)
     grid = CellGrid.for_scan(gear, int((located.surface != OTHER).sum()), planar=planar)
     located = locate(pose.apply(points), gear, bands)
     cells = bin_points(located, grid, clip=stray_limit(located))
