@@ -99,7 +99,7 @@ MUTATIONS = [
         ("diagnose/by_tooth.py", "for _ in range(2):", "for _ in range(0):", "diagnose/core/test_shapes.py"),
         ("wear/thickness.py", "+ self.otherwise[0]", "", "comparison/test_coat_or_thick.py"),
         ("report/words/verdict.py", "wear.volume < NORMAL_95 * wear.volume_std", "False", "report/test_words.py"),
-        ("diagnose/worn_sides.py", "cost - beyond.get(worn, 0.0) < limit", "cost < limit", "diagnose/core/test_worn_sides.py"),
+        ("diagnose/worn_sides.py", "cost - (more if worn == both else 0.0) < limit", "cost < limit", "diagnose/core/test_worn_sides.py"),
         ("diagnose/worn_sides.py", "return (NORMAL_95 * min(", "return (2.0 * NORMAL_95 * min(", "diagnose/core/test_worn_sides.py"),
         ("diagnose/worn_sides.py", "limit = self.by_sides[taken] + rules().close", "limit = self.by_sides[taken]", "diagnose/core/test_worn_sides.py"),
         ("diagnose/effects/root_form.py", "LOWER_END = 0.3", "LOWER_END = 0.6", "diagnose/test_root_form.py"),

@@ -49,6 +49,11 @@ def threads() -> int:
     told = os.environ.get(THREADS, "")
     if told.isdecimal() and int(told) > 0:
         return int(told)
+    return processors()
+
+
+def processors() -> int:
+    """Processors that this process may run on."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

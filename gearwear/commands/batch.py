@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import math
-import os
 import sys
 import time
 from argparse import Namespace
@@ -17,6 +16,7 @@ from gearwear.commands.arguments import Parser, answer
 from gearwear.commands.inputs import add_memory_argument
 from gearwear.commands.progress import bar_behind, say_beside
 from gearwear.errors import InputError
+from gearwear.processors import processors
 
 if TYPE_CHECKING:
     from gearwear.fleet.batch import Crew, Tally, Tell
@@ -109,7 +109,7 @@ def _crew(arguments: Namespace, memory: float) -> Crew:
     def workers(jobs: Sequence[Job]) -> Iterator[Iterator[Outcome]]:
         from gearwear.fleet.cluster import dashboard, local_workers, outcomes, remote_workers
 
-        number = min(arguments.workers or _processors(), len(jobs))
+        number = min(arguments.workers or processors(), len(jobs))
         with remote_workers(arguments.scheduler) if arguments.scheduler else local_workers(number, memory) as client:
             address = dashboard(client)
             if address and not arguments.quiet:
@@ -117,11 +117,6 @@ def _crew(arguments: Namespace, memory: float) -> Crew:
             yield outcomes(client, jobs)
 
     return here if arguments.workers == 0 else workers
-
-
-def _processors() -> int:
-    """That this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager

@@ -227,9 +227,8 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     if datum.low and (before or (loop is not None and (measured.faces or not _still_low(measured, loop)))):
         return _with_datum(measured, replace(datum, low=0.0))
     side = datum.worn_side
-    said = measured.faces or (
-        loop is not None and len(loop.worn_sides) == 2
-    )  # the other side is no datum either: `worn_notes` says so
+    # The other side is no datum either then: `worn_notes` says so.
+    said = measured.faces or (loop is not None and len(loop.worn_sides) == 2)
     if side is None:
         return measured
     told = {region.tooth for region in wear.regions if region.side is side}

@@ -87,9 +87,8 @@ class SurfacePoints:
         """The points picked by a mask or by indices; of a slice, views into these."""
         if isinstance(which, slice):
             return SurfacePoints(*(getattr(self, f.name)[which] for f in fields(self)))
-        at = (
-            np.flatnonzero(which) if which.dtype == np.bool_ else which
-        )  # `take` is several times as fast as an index in brackets
+        # `take` is several times as fast as an index in brackets.
+        at = np.flatnonzero(which) if which.dtype == np.bool_ else which
         return SurfacePoints(*(getattr(self, f.name).take(at, axis=0) for f in fields(self)))
 
     def own_roll(self, gear: Gear) -> Floats:

@@ -89,10 +89,12 @@ class SideCosts:
 
         Both sides made with what both may have lost alike is no better told by how well it fits than their class makes such a form uncommon.
         """
-        taken = self.chosen
+        taken, both = self.chosen, frozenset(Side)
         limit = self.by_sides[taken] + rules().close
-        beyond = dict.fromkeys([frozenset(Side)] if taken == NO_SIDE else [], self.uncommon)
-        return tuple(worn for worn, cost in self.by_sides.items() if worn != taken and cost - beyond.get(worn, 0.0) < limit)
+        more = self.uncommon if taken == NO_SIDE else 0.0
+        return tuple(
+            worn for worn, cost in self.by_sides.items() if worn != taken and cost - (more if worn == both else 0.0) < limit
+        )
 
 
 def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCosts:
@@ -297,13 +299,16 @@ class _Scan:
 
     def _within(self, lost: _Loss, side: Side, flank_class: int | None) -> bool:
         """Whether flanks of a class may be cut with the form of a loss."""
-        return self._form(lost.loss, side) <= profile_form_tolerance(self.fit.cells.grid.gear.normal_module, flank_class)
+        return self._in_tolerance(lost, side, flank_class) <= 1.0
+
+    def _in_tolerance(self, lost: _Loss, side: Side, flank_class: int | None) -> float:
+        """The form of a loss in the form tolerance of a class."""
+        return self._form(lost.loss, side) / profile_form_tolerance(self.fit.cells.grid.gear.normal_module, flank_class)
 
     def _uncommon(self, lost: _Loss) -> float:
         """By how much, in cost, a form that both sides lost is less common among flanks of the gear's class than none: 95 % of them keep the tolerance."""
-        gear = self.fit.cells.grid.gear
-        tolerance = profile_form_tolerance(gear.normal_module, gear.tolerance.flank_class)
-        return (NORMAL_95 * min(self._form(lost.loss, side) for side in Side) / tolerance) ** 2
+        flank_class = self.fit.cells.grid.gear.tolerance.flank_class
+        return (NORMAL_95 * min(self._in_tolerance(lost, side, flank_class) for side in Side)) ** 2
 
     def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> _Worn | None:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
