@@ -24,7 +24,7 @@ from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
 from gearwear.design.tolerance import profile_form_tolerance
-from gearwear.diagnose.columns import CellColumns, Stretch, cuts_among, cuts_of
+from gearwear.diagnose.columns import CellColumns, Stretch, between, cuts_among
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
@@ -410,7 +410,7 @@ class _Scan:
         loss = law @ fitted.amplitudes[-law.shape[1] :]
         by_tooth = self.shares(loss[self.rows])
         alone = self.robust(self.columns(searched), by_tooth, first=fitted.weight)
-        searched = self._searched(searched, _by_tooth(self.fit.cells, loss), alone.weight)
+        searched = self._searched(searched, _by_tooth(self.fit.cells, loss, self.fit.dictionary.first.cuts), alone.weight)
         alone = self.robust(self.columns(searched), by_tooth, first=alone.weight)
         last = slice(len(alone.amplitudes) - by_tooth.count, None)
         share = alone.amplitudes[last]
@@ -509,16 +509,15 @@ def _lost_on(sides: Ints) -> frozenset[Side]:
     return frozenset(side for side in Side if np.isin(sides, (0, int(side))).any())
 
 
-def _by_tooth(cells: Cells, loss: Floats) -> CellColumns:
-    """The common loss with a share of its own on every flank, (m, k)."""
-    points, cuts = cells.points, cuts_of(cells.grid)
+def _by_tooth(cells: Cells, loss: Floats, cuts: Ints) -> CellColumns:
+    """The common loss with a share of its own on every flank, (m, k), by stretches that begin at `cuts`."""
+    points = cells.points
     flank = points.tooth.astype(np.int64) * 2 + (points.side > 0)
     worn = np.flatnonzero(np.bincount(flank[loss != 0.0], minlength=2 * cells.grid.gear.teeth))
     place = np.full(2 * cells.grid.gear.teeth, -1)
     place[worn] = np.arange(len(worn))
     stretches = []
-    for start, stop in zip(cuts, [*cuts[1:], len(loss)], strict=True):
-        rows = slice(int(start), int(stop))
+    for rows in between(cuts, len(loss)):
         which, lost = np.where(loss[rows] != 0.0, place[flank[rows]], -1), loss[rows, None]
         here = np.unique(which[which >= 0])
         stretches.append(Stretch(rows, here, np.where(which[:, None] == here, lost, 0.0)))
