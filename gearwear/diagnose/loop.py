@@ -79,6 +79,7 @@ def close_loop(
     worn: frozenset[Side] | None = None,
     out: Bools | None = None,
     begun: Loop | None = None,
+    ruled_out: frozenset[frozenset[Side]] = frozenset(),
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -100,6 +101,8 @@ def close_loop(
         Cells that a look at fewer cells left out because they look worn (`left_out`): the search begins without them.
     begun : Loop or None
         What was found before the scan was located again: the search begins with its effects as well as with none.
+    ruled_out : frozenset of frozenset of Side
+        Sides that a first look showed not to be worn throughout together (`Loop.sides_ruled_out`).
 
     Returns
     -------
@@ -133,7 +136,7 @@ def close_loop(
         for face in context.faces:
             told |= (cells.points.surface <= FILLET) & face.worn(cells.points, cells.grid.row_height)
         others_alone = replace(plain.fit, cells=cells.without(told)) if told.any() else plain.fit
-        costs = side_costs(others_alone, plain.problem, plain.model, noise).beside(ran)
+        costs = side_costs(others_alone, plain.problem, plain.model, noise, ruled_out).beside(ran)
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == alone else searched_without(sides), noise, always)
@@ -148,7 +151,10 @@ def close_loop(
     named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
     if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
         named = tuple(_or_smoothing(effect) for effect in named)
-    return replace(taken, effects=named, others=others, sides_sure=not refuted and not apart.any() and costs.beyond_doubt)
+    taken = replace(taken, effects=named, others=others)
+    if refuted or apart.any():
+        return taken
+    return replace(taken, sides_sure=costs.beyond_doubt, sides_ruled_out=costs.ruled_out)
 
 
 def _with_margins(context: Context, cells: Cells, worn: frozenset[Side] | None) -> tuple[Context, frozenset[Side]]:
