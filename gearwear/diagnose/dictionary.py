@@ -139,6 +139,20 @@ def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context
     return Dictionary(columns, np.arange(len(motion)), motion, tuple(candidates))
 
 
+def with_worn(dictionary: Dictionary, cells: Cells, context: Context) -> Dictionary:
+    """The dictionary of the same scan with other sides worn: few effects have other columns then (`Effect.by_worn`), and these stand behind all others."""
+    seen, points = cells.seen, cells.points.take(cells.seen)
+    for place, candidate in enumerate(dictionary.candidates):
+        if candidate.effect.by_worn:
+            basis = np.zeros((len(seen), len(candidate.columns)))
+            basis[seen] = cell_basis(candidate.effect, points, context, candidate.shape, cells.grid)
+            columns = np.arange(dictionary.count, dictionary.count + basis.shape[1])
+            candidates = list(dictionary.candidates)
+            candidates[place] = replace(candidate, columns=columns)
+            dictionary = replace(dictionary.with_columns(basis), candidates=tuple(candidates))
+    return dictionary
+
+
 def cell_basis(effect: Effect, points: SurfacePoints, context: Context, shape: Shape, grid: CellGrid) -> Floats:
     """An effect's basis averaged over cells whose mean feet are `points`.
 

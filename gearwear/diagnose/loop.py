@@ -15,7 +15,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.active_face import active_faces
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
-from gearwear.diagnose.dictionary import Candidate, build_dictionary
+from gearwear.diagnose.dictionary import Candidate, Dictionary, build_dictionary, with_worn
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
@@ -122,8 +122,12 @@ def close_loop(
         always |= {ROOT_FORM}
         made = tuple(effect for effect in made if effect.group != LEVEL_GROUP or effect.kind is not Kind.MANUFACTURE)
 
+    every_candidate = build_dictionary(cells, made, context)
+
     def searched_without(sides: frozenset[Side]) -> Searched:
-        return _first_search(cells, noise, replace(context, worn=sides), made, always, out, apart, begun)
+        without = replace(context, worn=sides)
+        dictionary = with_worn(every_candidate, cells, without) if sides else every_candidate
+        return _first_search(cells, noise, without, dictionary, always, out, apart, begun)
 
     plain = searched_without(alone)
     low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
@@ -217,14 +221,13 @@ def _first_search(
     cells: Cells,
     noise: float,
     context: Context,
-    effects: tuple[Effect, ...],
+    dictionary: Dictionary,
     always: frozenset[str],
     out: Bools | None,
     apart: Bools,
     begun: Loop | None,
 ) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out, and those `apart`."""
-    dictionary = build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     sound = sound_cells(cells, context.worn, context.fillets_told, context.faces) & ~rounded_ends(cells, noise) & ~apart
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2

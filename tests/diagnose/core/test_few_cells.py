@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gearwear.design.side import Side
 from gearwear.design.surface import TIP
 from gearwear.diagnose import few_cells
 from gearwear.diagnose.covariance import CellCovariance
-from gearwear.diagnose.dictionary import build_dictionary
+from gearwear.diagnose.dictionary import build_dictionary, with_worn
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.pitch import EFFECT as PITCH
 from gearwear.diagnose.effects.pitch import Pitch
@@ -48,6 +49,19 @@ def test_a_freedom_for_every_tooth_is_built_a_stretch_at_a_time(monkeypatch):
     (own,) = [c.columns for c in dictionary.candidates if c.shape == shape]
     np.testing.assert_array_equal(dictionary.take(own), in_full)
     assert sum(asked) == 2 * int(cells.seen.sum()) and max(asked) <= np.diff(dictionary.first.cuts).max()
+
+
+@pytest.mark.parametrize("worn", [frozenset({Side.LEFT}), frozenset(Side)])
+def test_columns_that_other_sides_worn_leave_as_they_are_are_kept(worn):
+    """The dictionary for sides worn throughout is the same as one built for them anew, and shares what was built."""
+    cells = binned(())
+    context, effects = make_context(cells, np.eye(3), False), tuple(effect for effect in catalogue() if effect.searched)
+    plain, without = build_dictionary(cells, effects, context), replace(context, worn=worn)
+    kept, anew = with_worn(plain, cells, without), build_dictionary(cells, effects, without)
+    assert kept.first is plain.first
+    assert [(c.name, c.shape) for c in kept.candidates] == [(c.name, c.shape) for c in anew.candidates]
+    for one, other in zip(kept.candidates, anew.candidates, strict=True):
+        np.testing.assert_array_equal(kept.take(one.columns), anew.take(other.columns))
 
 
 def test_a_fit_on_few_cells_is_left_as_it_is(fit):
