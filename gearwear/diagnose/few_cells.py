@@ -25,8 +25,6 @@ ENOUGH_CELLS = 10_000
 """Cells beyond which rows are put together, and then teeth left out."""
 TOGETHER = 64
 """Columns that are averaged at a time; numerical."""
-LEAST_SEEN = 0.1
-"""Share of the cells, at least, by which their stretches are made longer; numerical."""
 
 
 def few_rows(grid: CellGrid) -> CellGrid:
@@ -77,7 +75,7 @@ def on_few_cells(fit: Fit, sound: Bools, noise: float) -> tuple[Fit, Bools]:
             yield mean @ dictionary.take(np.arange(start, min(start + TOGETHER, dictionary.count)))
 
     # Of the teeth that are left out nothing is seen: stretches are as much longer.
-    columns = CellColumns.gathered(averaged(), cuts_of(grid, max(float(cells.seen.mean()), LEAST_SEEN)), TOGETHER)
+    columns = CellColumns.gathered(averaged(), cuts_of(grid, float(kept.mean())), TOGETHER)
     together = fit.cells.grid.rows // grid.rows
     apart = np.abs(np.subtract.outer(np.arange(together), np.arange(together)))
     covariance = CellCovariance(
