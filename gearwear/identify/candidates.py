@@ -17,7 +17,8 @@ from gearwear.errors import InputError
 from gearwear.identify.gauges import SPUR, Gauge, Helix, Measured
 from gearwear.identify.proposal import Proposal, check_known, propose, spec_of
 from gearwear.identify.survey import PROFILE_SLOPE, Survey, survey
-from gearwear.placing.registration import Registration, register
+from gearwear.placing.coarse import Sample, take_sample
+from gearwear.placing.registration import Registration, refine, rough_pose
 from gearwear.robust import median_scale, scale_about
 from gearwear.threads import on_one_thread
 
@@ -217,8 +218,9 @@ def find_candidates(
     if seen.oval:
         thin = _rounded(seen, thin)
     least = min(candidate.proposal.cost for candidate in candidates)
+    samples: dict[float, Sample] = {}
     fitted = [
-        _fitted(candidate, thin, thin_normals, planar, seen) if candidate.proposal.cost < least + HOPELESS else candidate
+        _fitted(candidate, thin, thin_normals, planar, seen, samples) if candidate.proposal.cost < least + HOPELESS else candidate
         for candidate in candidates
     ]
     return Candidates(seen, gauges, _ranked(fitted, thin))
@@ -316,11 +318,21 @@ def _rounded(seen: Survey, points: Floats) -> Floats:
     return seen.pose.inverse().apply(placed)
 
 
-def _fitted(candidate: CandidateGear, points: Floats, normals: Floats | None, planar: bool, seen: Survey) -> CandidateGear:
-    """The scan registered to the candidate, and what that leaves."""
-    points = _scaled(candidate, points)
+def _fitted(
+    candidate: CandidateGear,
+    points: Floats,
+    normals: Floats | None,
+    planar: bool,
+    seen: Survey,
+    samples: dict[float, Sample],
+) -> CandidateGear:
+    """The scan registered to the candidate, and what that leaves; `samples` are kept by scale, which many candidates have in common."""
+    points, scale = _scaled(candidate, points), candidate.proposal.scale
+    if not planar and scale not in samples:
+        samples[scale] = take_sample(points, normals)
     try:
-        placed = register(points, candidate.gear, normals, planar, start=seen.pose)
+        pose = rough_pose(points, candidate.gear, normals, planar, seen.pose, samples.get(scale))
+        placed = refine(points, candidate.gear, pose, planar)[0]
     except InputError:
         return candidate
     located = locate(placed.pose.apply(points), candidate.gear, placed.bands)

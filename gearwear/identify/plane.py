@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.identify.free_involute import FreeInvolute, fit_involute
 from gearwear.identify.ring import TipCircle, ToothCount, count_teeth, innermost, tip_circle
 from gearwear.placing.coarse import Sample, frame
 from gearwear.placing.screw import LEAST_ANGLE
@@ -16,7 +18,7 @@ LEAST_SHARE = 0.04
 """Share of the pattern that must repeat for teeth to be counted."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Plane:
     """A scan seen along a candidate axis; teeth that turn with the height by `twist`, rad/mm."""
 
@@ -44,6 +46,18 @@ class Plane:
     def middle(self) -> float:
         """Height from which the twist is counted, mm."""
         return float(np.median(self.points[self.sides, 2]))
+
+    @cached_property
+    def flank(self) -> FreeInvolute | None:
+        """The involute through the tooth sides; fitted once, as every stage of a survey asks for it."""
+        return self.fit(*self.flat)
+
+    def fit(self, flat: Floats, height: Floats | None) -> FreeInvolute | None:
+        """The involute through tooth sides (n, 2) seen in the plane, at heights (n,) or, of a planar section, at none; mm."""
+        count = self.count
+        return fit_involute(
+            flat, height, self.circle.centre, count.teeth, count.phase, self.root, self.circle.radius, self.twist or None
+        )
 
 
 def along_axis(sample: Sample, axis: Floats, twist: float = 0.0, known: int | None = None) -> list[Plane]:

@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
 from gearwear.errors import InputError
-from gearwear.identify.free_involute import FreeInvolute, fit_involute
+from gearwear.identify.free_involute import FreeInvolute
 from gearwear.identify.inward import Teeth, points_inward
 from gearwear.identify.lengths import FaceEnds, bore_diameter, face_ends, lands, rim_diameter
 from gearwear.identify.plane import LEAST_SHARE, Plane, along_axis, count_flat, plane_of
@@ -220,14 +220,14 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     height = None if planar else plane.points[plane.sides, 2] - plane.middle
     notes = []
     oval, direction = 0.0, 0.0
-    flank = _fit(flat, height, plane)
+    flank = plane.fit(flat, None) if planar else plane.flank
     if circle.oval > OUT_OF_ROUND and not plane.twist:
         # Tips that are nearly points may look oval; a scan that is stretched has better flanks without the stretch.
         straight = circle.rounded(flat)
         again = count_flat(straight, np.zeros(len(straight)), tip_circle(straight) or circle)
         if again is not None:
             rounded = replace(plane, circle=again[0], root=again[1], count=again[2])
-            better = _fit(straight, height, rounded)
+            better = rounded.fit(straight, height)
             if better is not None and (flank is None or better.scatter < 0.8 * flank.scatter):
                 oval, direction = circle.oval, circle.direction
                 flat, plane, flank = straight, rounded, better
@@ -235,7 +235,7 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
                     f"the tips lie on an oval, {100 * oval:.2f} % longer along {math.degrees(direction) % 180:.0f}° than across: taken for the scan's own "
                     "stretch and set aside"
                 )
-    flanks = [fit for fit in (flank, *(_fit(*part.flat, part) for part in parts[1:])) if fit is not None]
+    flanks = [fit for fit in (flank, *(part.flank for part in parts[1:])) if fit is not None]
     if flank is None or len(flanks) < len(parts) or not all(_smooth(fit, plane) for fit in flanks):
         raise InputError(
             f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an involute gear is needed"
@@ -314,7 +314,7 @@ def _parts(plane: Plane) -> list[Plane]:
     """A gear as it is, or the halves of a double helical one, the lower first, along the axis that both lie about."""
     halves = _halves(plane)
     for _ in range(3):
-        leans = [flank.lean for half in halves if (flank := _fit(*half.flat, half)) is not None]
+        leans = [half.flank.lean for half in halves if half.flank is not None]
         if len(leans) < 2:
             break
         lean = np.mean(leans, axis=0)
@@ -352,13 +352,6 @@ def _halves(plane: Plane) -> list[Plane]:
     return halves if halves[0].count.teeth == halves[1].count.teeth else []
 
 
-def _fit(flat: Floats, height: Floats | None, plane: Plane) -> FreeInvolute | None:
-    """The involute through the flanks seen in a plane."""
-    count = plane.count
-    twist = plane.twist or None
-    return fit_involute(flat, height, plane.circle.centre, count.teeth, count.phase, plane.root, plane.circle.radius, twist)
-
-
 def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> Plane:
     """The axis along which the scan repeats most, set straight by the flanks."""
     planes: list[Plane] = []
@@ -380,10 +373,7 @@ def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> Plane:
             "no gear is seen in the scan: nothing repeats round an axis; a gear is needed, with the tips of its teeth in the scan"
         )
     # What repeats most may be seen along a wrong axis: of a gear an involute passes through the flanks.
-    fits = (_fit(*plane.flat, plane) for plane in planes)
-    best = next(
-        (plane for plane, flank in zip(planes, fits, strict=True) if flank is not None and _smooth(flank, plane)), planes[0]
-    )
+    best = next((plane for plane in planes if plane.flank is not None and _smooth(plane.flank, plane)), planes[0])
     # Part of a helical gear looks like a spur gear along a wrong axis.
     if not planar and _roughness(best) > DOUBTFUL:
         best = min((candidate for plane in planes for candidate in (plane, *_turned(sample, plane))), key=_roughness)
@@ -393,7 +383,7 @@ def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> Plane:
 
 def _roughness(plane: Plane) -> float:
     """Scatter about the involute, in pitches at the tips of the teeth counted."""
-    flank = _fit(*plane.flat, plane)
+    flank = plane.flank
     return math.inf if flank is None else flank.scatter * plane.count.teeth / (2.0 * math.pi * plane.circle.radius)
 
 
@@ -412,7 +402,7 @@ def _smooth(flank: FreeInvolute, plane: Plane) -> bool:
 
 def _without_gaps(plane: Plane) -> Plane:
     """The plane with half, a third … of the teeth where flanks lie on only every second, third … of those counted."""
-    flank, teeth = _fit(*plane.flat, plane), plane.count.teeth
+    flank, teeth = plane.flank, plane.count.teeth
     if flank is None:
         return plane
     flat, height = plane.flat
@@ -463,7 +453,7 @@ def _straightened(sample: Sample, plane: Plane) -> Plane:
     plane = min([plane, *others], key=_roughness)
     for _ in range(3):
         count = plane.count
-        flank = _fit(*plane.flat, plane)
+        flank = plane.flank
         if flank is None:
             return plane
         axis = plane.turn.T @ np.array([*flank.lean, 1.0])

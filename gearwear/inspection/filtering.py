@@ -70,15 +70,25 @@ def gauss_filter(out: Floats, x: Floats, weight: Floats, cutoff: float | Floats)
     Weight function ``exp(−π (x / (α λ_c))²)``, α = sqrt(ln 2 / π) (ISO 16610-21). At ends and gaps its first moment is kept too
     (local line): a straight line passes unchanged everywhere, and in the inside of an even trace nothing changes.
     """
-    distance = x[None] - out[:, None]
-    width = np.broadcast_to(cutoff, out.shape)[:, None]
-    power = -math.pi * (distance / (GAUSS * width)) ** 2
+    width = np.broadcast_to(cutoff, out.shape)
+    return _with_first_moment(weight * _bells(out, x, width), out, x, width)
+
+
+def _bells(out: Floats, x: Floats, width: Floats) -> Floats:
+    """(k, n) weight function round each place, its greatest value 1."""
+    power = -math.pi * ((x[None] - out[:, None]) / (GAUSS * width[:, None])) ** 2
     power -= power.max(axis=1, keepdims=True)
-    kernel = weight * np.where(power > -80.0, np.exp(power), 0.0)  # denormal numbers would slow every product
-    kernel /= kernel.sum(axis=1, keepdims=True)
+    bells = np.zeros_like(power)
+    np.exp(power, out=bells, where=power > -80.0)  # most lie farther off, and denormal numbers would slow every product
+    return bells
+
+
+def _with_first_moment(kernel: Floats, out: Floats, x: Floats, width: Floats) -> Floats:
+    """The kernel (k, n), each row to the sum of 1 and to the mean of its place."""
+    kernel = kernel / kernel.sum(axis=1, keepdims=True)
     mean = kernel @ x
     off = x[None] - mean[:, None]
-    spread = (kernel * off**2).sum(axis=1) + (1e-6 * width[:, 0]) ** 2
+    spread = (kernel * off**2).sum(axis=1) + (1e-6 * width) ** 2
     return np.asarray(kernel * (1.0 + off * ((out - mean) / spread)[:, None]), dtype=np.float64)
 
 
@@ -110,10 +120,11 @@ def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, ste
     gap = max(where.gap, usual_gap(x, weight))
     known = _between_samples(station, x, gap, step)
     cutoff = np.maximum(where.cutoff, SAMPLES_PER_CUTOFF * _spacing(station[known], x, where.cutoff, gap))
-    matrix = gauss_filter(station[known], x, weight, cutoff)
+    bells = _bells(station[known], x, cutoff)
+    matrix = _with_first_moment(weight * bells, station[known], x, cutoff)
     variance = (matrix**2) @ (1.0 / weight)
     # What an even trace would have there too, at its ends, is no thinness.
-    thinness = variance / (gauss_filter(station[known], x, np.ones_like(weight), cutoff) ** 2).sum(axis=1)
+    thinness = variance / (_with_first_moment(bells, station[known], x, cutoff) ** 2).sum(axis=1)
     usable = known.copy()
     if known.any():
         points, usual = 1.0 / np.maximum(variance, 1e-300), 1.0 / np.median(variance)
