@@ -113,7 +113,6 @@ MUTATIONS = [
         ("fleet/conformity.py", "if most <= limit", "if least <= limit", "fleet/test_conformity.py"),
         ("fleet/quantities.py", "HIDDEN = 2.0", "HIDDEN = 1.0", "fleet/test_quantities.py"),
         ("comparison/open_volume.py", "HOLLOW = 2.0", "HOLLOW = 1.0", "comparison/test_open_volume.py"),
-        ("comparison/open_volume.py", "NORMAL_95 * sum(loop.level_std)", "0.0", "comparison/test_measured_thinning.py"),
         ("comparison/open_volume.py", "if far > own else 0.0", "if far > -1.0 else 0.0", "comparison/test_open_volume.py"),
         ("fleet/line.py", "scatter = math.sqrt(square / degrees) * arm if bends else std", "scatter = std", "fleet/test_line.py"),
         ("fleet/line.py", "0.0 if above >= limit else _crossing", "_crossing", "fleet/test_line.py"),
@@ -204,7 +203,7 @@ MUTATIONS = [
         ("placing/side_maps.py", "GROWTH_LIMIT_STDS = 2.5", "GROWTH_LIMIT_STDS = 1.0", "placing/test_side_maps.py"),
         ("placing/side_maps.py", "seed * spread", "spread", "placing/test_side_maps.py"),
         ("placing/side_maps.py", "np.where(number > 0.5, noise**2 / np.maximum(number, 1.0), white**2) - white**2", "0.0", "placing/test_side_maps.py"),
-        ("placing/registration.py", "np.maximum(1.0 - share, 0.1)", "np.ones_like(share)", "placing/test_leaving_out.py"),
+        ("placing/least_squares.py", "np.maximum(1.0 - share, 0.1)", "np.ones_like(share)", "placing/test_leaving_out.py"),
         ("placing/registration.py", "6.0 * max(scale, 1e-6)", "2.0 * max(scale, 1e-6)", "placing/test_strays.py"),
         # inspection
         ("inspection/estimate.py", "COVERAGE_FACTOR = 2.0", "COVERAGE_FACTOR = 1.0", "inspection/test_limits.py"),

@@ -24,7 +24,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import END_LOW
 from gearwear.placing.cells import Cells
 from gearwear.placing.datum import choose_datum
-from gearwear.placing.registration import clustered
+from gearwear.placing.least_squares import clustered
 from gearwear.robust import median_scale, tukey_slope, tukey_weight
 
 STDS = 5.0

@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats, Ints
+from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
@@ -30,6 +30,7 @@ from gearwear.placing.coarse import (
     take_sample,
 )
 from gearwear.placing.datum import Datum, choose_datum
+from gearwear.placing.least_squares import clustered, solved
 from gearwear.placing.pose import Pose, along_screw, flip, least_turn, motion_columns, size_of_motion, small_motion
 from gearwear.placing.screw import helical_axes
 from gearwear.processors import each
@@ -42,7 +43,7 @@ MAX_QUICK_COST = 0.25
 LAST_STEP = 2e-4, 0.1
 """Last step, in modules or in how well the pose is known, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
 REPEATED_TO_MODULES = 1e-6
-"""Last step, in modules, from which on no other pass follows (6 nm at module 6.35; each is a thirtieth of the one before or less): the pose is then the
+"""Last step, in modules, from which on no other pass or quick step follows (6 nm at module 6.35; each is a thirtieth of the one before or less): the pose is then the
 part's own, wherever the search began, and what hangs on it goes no other way for where the gear lay."""
 MOST_PASSES = 8
 LEAST_ON_FACE = 10
@@ -161,12 +162,13 @@ def register(
 
 
 def rough_pose(
-    points: Floats, gear: Gear, normals: Floats | None = None, planar: bool = False, start: Pose | None = None
+    points: Floats, gear: Gear, normals: Floats | None, planar: bool, start: Pose | None = None, sample: Sample | None = None
 ) -> Pose:
-    """The pose from a thinned scan, from which `refine` goes on; parameters and errors as `register`."""
+    """The pose from a thinned scan, from which `refine` goes on; parameters and errors as `register`. `sample` is `take_sample` of the points, if known."""
     free = _free(planar)
     thin = _thinned(points, QUICK_FIT_POINTS, seed=1)
-    sample = None if planar else take_sample(points, normals)
+    if sample is None and not planar:
+        sample = take_sample(points, normals)
     best = None
     if start is not None:
         best = _quick_fit(thin, gear, start if sample is None else snap_height(sample, start, gear), free)
@@ -204,7 +206,9 @@ def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> _Fit:
     """Cost (0 … 1, mean clipped deviation) and pose after a few robust steps from far away."""
     near = 0.06 * gear.transverse_module
     for _ in range(8):
-        pose, _ = _robust_step(points, gear, pose, free, floor=0.25 * near)
+        pose, step = _robust_step(points, gear, pose, free, floor=0.25 * near)
+        if step < REPEATED_TO_MODULES * gear.transverse_module:
+            break
     located = locate(pose.apply(points), gear, workers=1)
     miss = np.where(located.surface == OTHER, near, np.abs(np.nan_to_num(located.deviation)))
     return float(np.minimum(miss, near).mean() / near), pose
@@ -247,7 +251,7 @@ def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: flo
     columns = np.hstack([motion_columns(position, normal)[:, free], np.ones((len(known), 1))])
     centre, scale = median_scale(deviation)
     weight = tukey_weight(deviation - centre, max(scale, floor, 1e-9))
-    motion = _solve(columns, -deviation, weight)
+    motion = solved(columns, -deviation, weight)
     full = np.zeros(6)
     full[free] = motion[:-1]
     limit = 0.2 * gear.transverse_module  # a step this far is a guess, not a correction
@@ -255,59 +259,6 @@ def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: flo
     if size > limit:
         full *= limit / size
     return pose.then(small_motion(full)), size
-
-
-def _solve(columns: Floats, target: Floats, weight: Floats) -> Floats:
-    """Weighted least squares by the normal equations; directions the data do not see get no motion."""
-    return _inverse(columns.T @ (columns * weight[:, None])) @ (columns.T @ (weight * target))
-
-
-def _inverse(information: Floats) -> Floats:
-    """Inverse on the directions that are seen, zero on the others."""
-    scale = np.sqrt(np.maximum(np.diag(information), 0.0))  # of a robust fit of what does not fit it may be negative
-    scale[scale == 0.0] = 1.0
-    value, vector = np.linalg.eigh(information / np.outer(scale, scale))
-    keep = value > 1e-7
-    return np.asarray((vector[:, keep] / value[keep]) @ vector[:, keep].T / np.outer(scale, scale))
-
-
-def clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints) -> Floats:
-    """Covariance of a robust fit whose residuals belong together in clusters.
-
-    Parameters
-    ----------
-    columns : (n, p) float
-        Of the fit.
-    influence, slope : (n,) float
-        ψ(r) and its derivative, times the base weight.
-    cluster : (n,) int
-        Any label.
-
-    Returns
-    -------
-    (p, p) float
-
-    Notes
-    -----
-    Sandwich of an M-estimator (Huber & Ronchetti 2009, 6.3): the bread is made of ψ′, not of the weights ψ / r, which are larger and
-    would make the standard deviations a sixth too small. Each cluster's score is what leaving it out would change (jackknife over
-    clusters), so that few clusters are no excuse; at most tenfold, where one cluster alone sees a motion.
-    """
-    _, label = np.unique(cluster, return_inverse=True)
-    p = columns.shape[1]
-    score: Floats = np.column_stack([np.bincount(label, column * influence) for column in columns.T]).astype(np.float64)
-    information = np.empty((len(score), p, p))
-    for i in range(p):
-        for j in range(i + 1):
-            information[:, i, j] = information[:, j, i] = np.bincount(label, columns[:, i] * columns[:, j] * slope)
-    whole = information.sum(axis=0)
-    value, vector = np.linalg.eigh(_inverse(whole))
-    root = (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T  # of the bread
-    share, direction = np.linalg.eigh(root @ information @ root)  # of what is known, by cluster
-    unshared = np.maximum(1.0 - share, 0.1)
-    moved = np.einsum("gij,gj->gi", direction / unshared[:, None, :], np.einsum("gij,gi->gj", direction, score @ root)) @ root
-    moved[:, np.diag(whole) == 0.0] = 0.0  # not seen: no rounding in its place
-    return np.asarray(moved.T @ moved)
 
 
 def refine(
@@ -320,12 +271,12 @@ def refine(
     """
     free = _free(planar)
     located = locate(pose.apply(points), gear)
-    fitting = _check_fit(located, points, gear, planar)
     bands = narrowed_bands(located, gear)
     if not planar and gear.spec.gap == 0.0 and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
         pose = _centred(located, gear, pose)
         located = locate(pose.apply(points), gear)  # ends that lay farther off than such points count are seen now
-        fitting, bands = _check_fit(located, points, gear, planar), narrowed_bands(located, gear)
+        bands = narrowed_bands(located, gear)
+    fitting = _check_fit(located, points, gear, planar)
     grid = CellGrid.for_scan(gear, int((located.surface != OTHER).sum()), planar=planar)
     located = locate(pose.apply(points), gear, bands)
     cells = bin_points(located, grid, clip=stray_limit(located))
@@ -414,7 +365,8 @@ def _motion_without(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floa
 
 def _centred(located: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
     """`pose` with the middle of what was seen at mid-face."""
-    low, high = np.quantile(located.position[located.surface != OTHER, 2], [0.002, 0.998])
+    seen = located.position[located.surface != OTHER, 2]
+    low, high = np.quantile(seen, [0.002, 0.998]) if len(seen) else (0.0, gear.face_width)
     return along_screw(pose, gear, 0.5 * float(gear.face_width - low - high))
 
 
@@ -534,7 +486,7 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> CellFit:
         residual = d - columns @ solution
         scale = max(median_scale(residual)[1], 1e-9)
         weight = tukey_weight(residual, scale) * base
-        new = _solve(columns, d, weight)
+        new = solved(columns, d, weight)
         moved = float(np.abs(new - solution).max())
         solution = new
         if moved < 1e-10:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gearwear.placing.registration import clustered
+from gearwear.placing.least_squares import clustered
 
 
 def test_each_cluster_counts_for_what_leaving_it_out_changes():

@@ -11,6 +11,7 @@ import pytest
 
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, TIP, Bands, locate
 from gearwear.errors import InputError
+from gearwear.placing import registration
 from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.placing.datum import choose_datum
 from gearwear.placing.pose import Pose
@@ -167,10 +168,14 @@ def test_a_face_seen_from_the_other_side_is_the_other_end():
     assert len(names) == 2
 
 
-def test_without_end_faces_the_height_is_centred_and_said_to_be_unknown():
+def test_without_end_faces_the_height_is_centred_and_said_to_be_unknown(monkeypatch):
+    """And whether it is of this gear is asked of the height that it has then, not of the first as well."""
+    asked = []
+    monkeypatch.setattr(registration, "_check_fit", lambda *given: asked.append(given) or 1.0)
     scan = make_scan(Recipe(pose="any", jitter=1.0, ends="none").of_size(8_000), 4)
     points = scan.points[true_pose(scan).apply(scan.points)[:, 2] < 9.0]
     found = register(points, GEAR)
+    assert len(asked) == 1
     np.testing.assert_array_equal(found.observed, [True, True, False, True, True, True])
     assert any("height is centred" in note for note in found.notes)
     z = found.pose.apply(points)[:, 2]
