@@ -16,6 +16,8 @@ UNITS = {
     "misalignment": "mm",
 }
 """Of what is said about a load."""
+OPTIONAL = {"torque", "load_per_width", "speed_rpm"}
+"""Of these, what need not be said: None."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +57,7 @@ class LoadSpec:
             how_many = "both given" if self.torque is not None else "both missing"
             raise InputError(f"[load] torque_Nm and load_per_width_N_mm are {how_many}: one of them is needed")
         for name, unit in UNITS.items():
-            if getattr(self, name) is not None:
+            if getattr(self, name) is not None or name not in OPTIONAL:
                 check_number(name, getattr(self, name), unit)
         if self.torque is not None:
             _above("torque_Nm", 1e-3 * self.torque, 1e9)

@@ -138,8 +138,6 @@ def _polish(points: Floats, centre: Floats, radius: float) -> TipCircle | None:
         if not radius > 0.0:
             return None
         wave = wave + step[3:] if not few else np.zeros(2)
-        if not radius > 0.0:
-            return None
     return TipCircle(centre, radius, 2.0 * float(np.hypot(*wave)) / radius, 0.5 * math.atan2(wave[1], wave[0]))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -120,10 +121,10 @@ def _triangles(elements: list[Element], tables: dict[str, PlyTable], vertices: i
 
 def _header(data: bytes) -> tuple[str, list[Element], int]:
     """Byte order ("" is ASCII), elements, and where the values start."""
-    end = data.find(b"end_header", 0, LONGEST_HEADER)
-    if not data.startswith(b"ply") or end < 0:
+    ended = re.search(rb"^end_header", data[:LONGEST_HEADER].replace(b"\r", b"\n"), re.M)  # a comment may hold the word too
+    if not data.startswith(b"ply") or ended is None:
         raise InputError('does not start with a PLY header ("ply" … "end_header"): a PLY file would be right')
-    start = end + len(b"end_header")
+    end, start = ended.span()
     start += 2 if data[start : start + 2] == b"\r\n" else 1
     order: str | None = None
     elements: list[tuple[str, int, list[Property]]] = []

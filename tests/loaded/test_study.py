@@ -101,6 +101,9 @@ def test_what_cannot_be_done_is_named(design):
         study_load(parse_design(GEARS))
     with pytest.raises(InputError, match="both given"):
         LoadSpec(torque=1.0, load_per_width=1.0)
+    for needed in ("misalignment", "elastic_modulus", "poisson"):
+        with pytest.raises(InputError, match=f"{needed} = None: a number"):
+            LoadSpec(torque=1.0, **{needed: None})
 
 
 def test_it_is_offered_by_the_package(design, elastic):

@@ -33,6 +33,16 @@ def test_a_cloud_comes_back_point_by_point(tmp_path: Path, name: str, packed: bo
     np.testing.assert_allclose(scan.points, points, rtol=0, atol=ROUNDED.get(name, 0.0))
 
 
+@pytest.mark.parametrize("line", [b"\n", b"\r\n"], ids=["LF", "CRLF"])
+def test_a_comment_may_hold_the_word_that_ends_a_header(tmp_path: Path, line: bytes) -> None:
+    head, body = ply(ball(), kind="f8").split(b"end_header\n")
+    head = head.replace(b"\nelement", b"\ncomment no end_header yet\nelement", 1).replace(b"\n", line)
+    path = tmp_path / "a.ply"
+    path.write_bytes(head + b"end_header" + line + body)
+
+    np.testing.assert_array_equal(read_one(path).points, ball())
+
+
 def corners(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Triangles as coordinates, each turned to begin with its least corner, in a fixed order."""
     found = points[triangles]
