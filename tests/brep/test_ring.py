@@ -34,7 +34,9 @@ def ring(**values: float) -> Gear:
     return Gear.from_spec(GearSpec("gear", internal=True, **{**given, **values}))
 
 
-@pytest.fixture(scope="module", params=SPREAD, ids=list(SPREAD))
+@pytest.fixture(
+    scope="module", params=[pytest.param(name, id=name, marks=[pytest.mark.long] * (name == "left 20")) for name in SPREAD]
+)
 def made(request, tmp_path_factory) -> tuple[Gear, Solid]:
     """A ring, and its solid from the STEP file."""
     gear = ring(**SPREAD[request.param])

@@ -126,7 +126,7 @@ SCANS = [
 ]
 
 
-SHOWN_BY_OTHERS = ("box.ply", "cloud.ply")
+SHOWN_BY_OTHERS = ("box.ply", "cloud.ply", "wheel.ply")
 """What the sphere and the line are refused for as well."""
 
 

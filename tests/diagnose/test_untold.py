@@ -131,7 +131,7 @@ def test_a_flank_that_is_no_datum_has_the_form_of_its_side():
     np.testing.assert_allclose(made[EVERY_THIRD, 0], expected, atol=4e-4)  # 6 µm of crowning move it by 4
 
 
-@pytest.mark.parametrize("fillets_follow", [True, False])
+@pytest.mark.parametrize("fillets_follow", [pytest.param(True, marks=pytest.mark.long), False])
 def test_few_worn_flanks_beside_a_form_of_all(fillets_follow):
     """Their volume, together and each, within two and three standard deviations, and the index of their teeth as well known as is said."""
     for seed in range(3):

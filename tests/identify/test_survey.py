@@ -11,6 +11,7 @@ import pytest
 from gearwear.cli import main
 from gearwear.design.side import Side
 from gearwear.errors import InputError
+from gearwear.identify import candidates
 from gearwear.identify.candidates import UNKNOWN_WIDTH, _rounded_width, find_candidates
 from gearwear.identify.ring import innermost
 from gearwear.identify.survey import Survey, survey
@@ -114,20 +115,26 @@ def test_coat_and_scale_of_the_scan_are_not_the_gears():
     assert (best.module.mm, best.profile_shift, best.thinning) == (2.5, 0.0, 0.0)
 
 
-@pytest.mark.parametrize("bore", [32.0, 0.0])
-@pytest.mark.parametrize(
-    "numbers",
-    [
-        GearNumbers(23, 4.0, 25.0, profile_shift=0.37, thinning=0.09),
-        GearNumbers(31, 2.5, 20.0, profile_shift=0.23, thinning=0.07),
-    ],
-    ids=["0.37", "0.23"],
+SHIFTED = (
+    GearNumbers(23, 4.0, 25.0, profile_shift=0.37, thinning=0.09),
+    GearNumbers(31, 2.5, 20.0, profile_shift=0.23, thinning=0.07),
 )
-def test_a_shift_that_is_not_round_is_offered(numbers, bore, tmp_path):
-    """Tip and root tell it; a round shift, or a scale that width and bore gainsay, does not hide it."""
+
+
+@pytest.mark.parametrize(
+    ("numbers", "bore"),
+    [
+        pytest.param(numbers, bore, id=f"{numbers.profile_shift}-{bore}", marks=[pytest.mark.long] * (first is not (bore > 0.0)))
+        for numbers, first in zip(SHIFTED, (True, False), strict=True)
+        for bore in (32.0, 0.0)
+    ],
+)
+def test_a_shift_that_is_not_round_is_offered(numbers, bore, tmp_path, monkeypatch):
+    """Tip and root tell it; a round shift, or a scale that width and bore gainsay, does not hide it. Of what was found the command tells."""
     recipe = Recipe(gear=replace(numbers, bore_diameter=bore), pose="any", noise_um=NOISE, jitter=1.0)
     made = make_scan(recipe.of_size(25_000), 3)
-    ranked = find_candidates(made.points).ranked
+    found = find_candidates(made.points)
+    ranked = found.ranked
     same = [one.proposal for one in ranked if one.proposal.module.mm == numbers.module and one.proposal.pressure_angle < 0.36]
     free = [one for one in same if one.profile_shift == pytest.approx(numbers.profile_shift, abs=0.005)]
     assert free and max(abs(residual) for residual in free[0].residuals[:2]) < 0.025
@@ -135,7 +142,8 @@ def test_a_shift_that_is_not_round_is_offered(numbers, bore, tmp_path):
     if bore:
         assert ranked[0].proposal is free[0]
         assert all(one.scale == 0.0 for one in same)
-    np.savetxt(tmp_path / "scan.xyz", made.points, fmt="%.4f")
+    np.savetxt(tmp_path / "scan.xyz", made.points[::20], fmt="%.4f")
+    monkeypatch.setattr(candidates, "find_candidates", lambda *given: found)
     assert main(["design", str(tmp_path / "scan.xyz"), "--out", str(tmp_path / "x.toml")]) == 0
     text = (tmp_path / "x.toml").read_text(encoding="utf-8")
     assert f"shift {free[0].profile_shift:+.3f}" in text
@@ -173,8 +181,10 @@ def test_a_planar_section_that_is_stretched():
     assert found.ranked[0].proposal.module.mm == 0.8
 
 
-def test_what_is_known_is_held_to():
+def test_what_is_known_is_held_to(monkeypatch):
     points = scan("few teeth, undercut").points[::3]
+    seen = survey(points)
+    monkeypatch.setattr(candidates, "survey", lambda *given: seen)
     fixed = find_candidates(points, module=3.1, face_width=11.5, bore=7.5).ranked
     assert {one.proposal.module.mm for one in fixed} == {3.1}
     assert (fixed[0].gear.face_width, fixed[0].gear.spec.bore_diameter) == (11.5, 7.5)
@@ -196,7 +206,12 @@ def test_no_gear_is_seen_in_a_ball_or_a_plate():
 
 @pytest.mark.shared
 @pytest.mark.parametrize(
-    ("name", "teeth", "module"), [("flatbed_gear_1", 28, 0.6), ("flatbed_gear_2", 31, 0.8), ("flatbed_gear_3", 54, 0.5)]
+    ("name", "teeth", "module"),
+    [
+        pytest.param("flatbed_gear_1", 28, 0.6, marks=pytest.mark.long),
+        pytest.param("flatbed_gear_2", 31, 0.8, marks=pytest.mark.long),
+        ("flatbed_gear_3", 54, 0.5),
+    ],
 )
 def test_real_gears_on_a_flatbed(shared, name, teeth, module):
     outline = read_one(shared / "real" / f"{name}.csv")

@@ -68,9 +68,10 @@ GEARS = [
     GearSpec("gear", 25, 3.0, 30.0, profile_shift=0.3),
     GearSpec("gear", 40, 2.0, 20.0, np.radians(25.0), rack_tip_radius=0.2),
 ]
+MORE_TEETH_ARE_LONG = [*GEARS[:2], pytest.param(GEARS[2], marks=pytest.mark.long)]
 
 
-@pytest.fixture(params=GEARS, ids=lambda spec: f"z{spec.teeth}", scope="module")
+@pytest.fixture(params=MORE_TEETH_ARE_LONG, ids=lambda spec: f"z{spec.teeth}", scope="module")
 def measured(request):
     gear = Gear.from_spec(request.param)
     put = known(gear.teeth, 7)

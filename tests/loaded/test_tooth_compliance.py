@@ -188,7 +188,7 @@ def test_a_helical_body_is_twisted_and_pushed_along_its_axis():
     assert torsion(body, STEEL, 5.0) == pytest.approx(turned / (4.0 * math.pi * shear), rel=1e-12)
 
 
-@pytest.mark.parametrize("degrees", [15.0, 25.0])
+@pytest.mark.parametrize("degrees", [pytest.param(15.0, marks=pytest.mark.long), 25.0])
 def test_published_formulas_square_to_a_helical_tooth_of_24_teeth_come_within_four_per_cent(degrees):
     body = gear(24, helix_angle=math.radians(degrees))
     elements = tooth_compliance(body, STEEL, 20.0)

@@ -39,6 +39,9 @@ def pair(degrees: float = 0.0, teeth: tuple[int, int] = (20, 72), **more: float)
 
 SPUR, HELICAL = pair(), pair(-20.0)
 every_pair = pytest.mark.parametrize(("pinion", "ring"), [SPUR, HELICAL], ids=["spur", "left 20"])
+spur_first = pytest.mark.parametrize(
+    ("pinion", "ring"), [SPUR, pytest.param(*HELICAL, marks=pytest.mark.long)], ids=["spur", "left 20"]
+)
 
 
 def standard(pinion: Gear, ring: Gear) -> float:
@@ -174,7 +177,7 @@ def test_flanks_touch_in_space_and_the_others_are_the_backlash_apart(pinion, rin
         assert least["ahead"][-1] == pytest.approx(play.normal, abs=2e-5)
 
 
-@every_pair
+@spur_first
 def test_a_perfect_pair_runs_without_error(pinion, ring):
     centre = standard(pinion, ring) - 0.1
     for side in Side:
@@ -186,7 +189,7 @@ def test_a_perfect_pair_runs_without_error(pinion, ring):
         assert (result.backlash_min.value, result.backlash_max.value) == pytest.approx((normal, normal), abs=1e-9)
 
 
-@every_pair
+@spur_first
 def test_ten_micrometres_off_the_flanks_that_carry(pinion, ring):
     """−10 µm along the normal is −10 / cos β_b on the transverse line of action, on the pinion's left or the ring's right flanks alike."""
     centre = standard(pinion, ring)

@@ -49,7 +49,7 @@ def laid_on(points: np.ndarray, teeth: int, module: float, pressure_angle: float
         pytest.param(PINION, 90.0, marks=pytest.mark.long),
         pytest.param(MIDDLE, 20.0, marks=pytest.mark.long),
         (MIDDLE, 90.0),
-        (FINE, 20.0),
+        pytest.param(FINE, 20.0, marks=pytest.mark.long),
         pytest.param(FINE, 90.0, marks=pytest.mark.long),
     ],
     ids=lambda of: of if isinstance(of, float) else of.teeth,
@@ -58,7 +58,7 @@ def test_a_section_stretched_along_one_direction_is_still_of_its_gear(numbers, d
     laid_on(outline(numbers, STRETCH, degrees), numbers.teeth, numbers.module)
 
 
-@pytest.mark.parametrize("numbers", [PINION, MIDDLE], ids=["12", "31"])
+@pytest.mark.parametrize("numbers", [PINION, pytest.param(MIDDLE, marks=pytest.mark.long)], ids=["12", "31"])
 def test_an_undistorted_section_is_not_doubted(numbers):
     assert not any("check that" in note for note in laid_on(outline(numbers), numbers.teeth, numbers.module))
 
@@ -89,7 +89,7 @@ def test_a_stretched_section_of_another_gear_is_refused_or_doubted(numbers, name
 
 
 @pytest.mark.parametrize("name", [name for name in OTHER if "degrees" not in name])
-@pytest.mark.parametrize("numbers", [PINION, MIDDLE], ids=["12", "31"])
+@pytest.mark.parametrize("numbers", [PINION, pytest.param(MIDDLE, marks=pytest.mark.long)], ids=["12", "31"])
 def test_another_gear_in_an_undistorted_section_is_refused(numbers, name):
     with pytest.raises(InputError, match=r"does not fit the design|is not of this gear"):
         laid_on(outline(numbers), *design_of(numbers, name))

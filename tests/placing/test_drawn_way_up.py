@@ -36,7 +36,7 @@ def registered(lay: str, helix: float, relieved: Side, worn: float) -> Floats:
     return np.asarray(np.nanmean(cells.grid.flank_shape(cells.points.deviation), axis=(0, 2)))
 
 
-@pytest.mark.parametrize(("lay", "helix"), [("over x", 0.0), ("over y", 12.0)])
+@pytest.mark.parametrize(("lay", "helix"), [pytest.param("over x", 0.0, marks=pytest.mark.long), ("over y", 12.0)])
 def test_upside_down_a_flank_is_still_the_one_that_is_drawn_relieved(lay: str, helix: float):
     assert np.abs(registered(lay, helix, Side.LEFT, 0.0)).max() < 0.002
 

@@ -36,7 +36,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * ("ring" in name)) for name in CASES])
 def test_it_is_refused_by_name(name):
     gear, drawn, words = CASES[name]
     points = MAKE[type(gear)](gear, 12_000, seed=1).points

@@ -39,7 +39,7 @@ def smoothed(points, errors, number):
     return result
 
 
-@pytest.mark.parametrize("size", [0.001, 0.006, 0.03])
+@pytest.mark.parametrize("size", [0.001, pytest.param(0.006, marks=pytest.mark.long), 0.03])
 def test_errors_of_their_own_are_that_whatever_form_the_flanks_have(size):
     points, errors = flanks()
     assert shared_errors(points.with_deviation(size * errors)) == pytest.approx(1.0, abs=SURE)

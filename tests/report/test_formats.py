@@ -6,18 +6,13 @@ import csv
 import json
 import struct
 import sys
-from functools import cache
 from pathlib import Path
-from tempfile import mkdtemp
 
 import numpy as np
 import pytest
 
 from gearwear.cli import main
-from gearwear.comparison.results import Results
-from gearwear.comparison.stations import compare
 from gearwear.design.gear import Gear
-from gearwear.design.pair import Design
 from gearwear.design.profiles import nominal_profiles
 from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
@@ -27,27 +22,15 @@ from gearwear.report.files.glb import painted, write_glb
 from gearwear.report.files.tables import write_sections_dxf
 from gearwear.report.write import write_results
 from gearwear.wear.solid import gear_triangles, on_outline
-from tests.synthetic import Effect, Patch, Recipe, make_scan
+from tests.report.fake import real_results
 
-WORN_TOOTH, COAT = 3, 0.02
-
-
-@cache
-def results() -> Results:
-    """A coated pinion with one patch, the loop closed."""
-    wear = (Patch(WORN_TOOTH, 1, 300.0, (37.0, 43.0), (3.0, 12.0)),)
-    recipe = Recipe(pose="mild", noise_um=5.0, jitter=1.0, wear=wear, effects=(Effect("coating", {"thickness_um": 1e3 * COAT}),))
-    scan = make_scan(recipe.of_size(30_000), 3)
-    file = Path(mkdtemp()) / "scan.xyz"
-    np.savetxt(file, scan.points, fmt="%.6f")
-    design = Design({"gear": Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0))})
-    return compare(design, [file])
+WORN_TOOTH, COAT = 1, 0.02
 
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory) -> tuple[Path, dict]:
     folder = tmp_path_factory.mktemp("written")
-    write_results(results(), folder, page=False, also=frozenset(EXTRAS))
+    write_results(real_results(), folder, page=False, also=frozenset(EXTRAS))
     return folder, json.loads((folder / "report.json").read_text("utf-8"))
 
 
@@ -65,7 +48,7 @@ def test_glb_is_the_worn_gear_in_metres_with_y_up(written):
     assert gear.is_watertight
     np.testing.assert_allclose(gear.bounds[:, 1], [0.0, 0.015], atol=1e-9)  # the face width stands up
     np.testing.assert_allclose(np.abs(gear.bounds[:, [0, 2]]).max(), 0.04445, atol=1e-6)
-    nominal = 12 * 4408.899 / 12 * 15.0  # mm³: section area of the drawing's gear times its face width
+    nominal = real_results().gear.section_area() * 15.0
     lost = sum(body.volume for body in trimesh.load(folder / "worn_volume.glb").dump()) * 1e9
     assert lost == pytest.approx(report["wear"]["solid"]["volume_mm3"], rel=1e-4)
     # Straight steps between the nodes of a curved flank leave a little of the section out.
@@ -97,8 +80,8 @@ def test_glb_is_blue_where_metal_is_missing_and_nowhere_else(written):
     (primitive,) = document["meshes"][0]["primitives"]
     where = values(document, data, primitive["attributes"]["POSITION"])
     colour = values(document, data, primitive["attributes"]["COLOR_0"])[:, :3].astype(int)
-    lost = results().wear.worn.loss
-    expected = on_outline(results().wear.worn, lost) > 0.15
+    lost = real_results().wear.worn.loss
+    expected = on_outline(real_results().wear.worn, lost) > 0.15
     blue = (colour[:, 2] > colour[:, 0] + 10) & (colour[:, 0] < 100)  # linear light, where the end of the scale is dark
     assert expected.any()
     assert blue[: len(expected)][expected].all()
@@ -111,7 +94,7 @@ def test_glb_is_blue_where_metal_is_missing_and_nowhere_else(written):
 def test_ply_points_have_scalar_fields_and_the_colours_of_the_page(written):
     plyfile = pytest.importorskip("plyfile")
     vertex = plyfile.PlyData.read(written[0] / "points.ply")["vertex"]
-    deviation, located = vertex["scalar_deviation_um"], results().measured.placed.located
+    deviation, located = vertex["scalar_deviation_um"], real_results().measured.placed.located
     empty = np.isnan(deviation)
     np.testing.assert_allclose(deviation[~empty], 1e3 * located.deviation[~empty], rtol=1e-6)
     assert empty.sum() < 0.01 * len(deviation)
@@ -124,7 +107,7 @@ def test_ply_points_have_scalar_fields_and_the_colours_of_the_page(written):
 
 def test_dxf_sections_are_closed_outlines_of_the_whole_gear(tmp_path):
     ezdxf = pytest.importorskip("ezdxf")
-    worn, heights = results().wear.worn, [2.0, 7.5]
+    worn, heights = real_results().wear.worn, [2.0, 7.5]
     write_sections_dxf(tmp_path / "sections.dxf", worn, heights)
     drawing = ezdxf.readfile(tmp_path / "sections.dxf")
     areas = {}
@@ -207,16 +190,16 @@ def test_parquet_without_pyarrow_is_refused_and_nothing_is_written(tmp_path, mon
     for name in ("pyarrow", "pyarrow.parquet"):
         monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(InputError, match="pip install pyarrow"):
-        write_results(results(), tmp_path / "out", also=frozenset({"glb", "parquet"}))
+        write_results(real_results(), tmp_path / "out", also=frozenset({"glb", "parquet"}))
     assert not (tmp_path / "out").exists()
 
 
 def test_topography_adds_up_to_the_wear(written):
     with (written[0] / "topography.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    grid, wear = results().measured.cells.grid, results().wear.found
+    grid, wear = real_results().measured.cells.grid, real_results().wear.found
     assert len(rows) == 12 * 2 * grid.rows * grid.flank
-    assert sum(int(row["points"]) for row in rows) == int(grid.flank_shape(results().measured.cells.count).sum())
+    assert sum(int(row["points"]) for row in rows) == int(grid.flank_shape(real_results().measured.cells.count).sum())
     cell = (rows[0]["tooth"], rows[0]["flank"])
     assert cell == ("1", "left")
     depth = np.array([float(row["wear_depth_um"]) for row in rows])
@@ -224,24 +207,24 @@ def test_topography_adds_up_to_the_wear(written):
     assert depth[~own].max() == 0.0
     # Volume as the sum of depth × area of the cells, which are equal in r².
     area = (
-        (results().gear.tip_roll ** 2 - results().gear.form_roll ** 2)
-        / (2 * results().gear.base_radius * grid.flank)
+        (real_results().gear.tip_roll ** 2 - real_results().gear.form_roll ** 2)
+        / (2 * real_results().gear.base_radius * grid.flank)
         * 15.0
         / grid.rows
     )
     assert depth[own].sum() * 1e-3 * area == pytest.approx(wear.volume, rel=0.05)
     for row in rows[:: len(rows) // 50]:
         assert float(row["radius_mm"]) ** 2 == pytest.approx(
-            float(row["roll_mm"]) ** 2 + results().gear.base_radius ** 2, rel=1e-5
+            float(row["roll_mm"]) ** 2 + real_results().gear.base_radius ** 2, rel=1e-5
         )
         assert (row["deviation_um"] == "") == (row["points"] == "0")
 
 
 def test_corrected_takes_the_coat_off_and_leaves_the_patch():
-    located = results().measured.placed.located
+    located = real_results().measured.placed.located
     tip = located.surface == 3
     assert np.median(located.deviation[tip]) == pytest.approx(COAT, abs=0.001)
-    assert np.median(results().corrected_deviation[tip]) == pytest.approx(0.0, abs=0.001)
+    assert np.median(real_results().corrected_deviation[tip]) == pytest.approx(0.0, abs=0.001)
 
 
 def test_unknown_formats_are_refused_before_anything_is_read(capsys, tmp_path):
