@@ -113,6 +113,7 @@ MUTATIONS = [
         ("fleet/conformity.py", "if most <= limit", "if least <= limit", "fleet/test_conformity.py"),
         ("fleet/quantities.py", "HIDDEN = 2.0", "HIDDEN = 1.0", "fleet/test_quantities.py"),
         ("comparison/open_volume.py", "HOLLOW = 2.0", "HOLLOW = 1.0", "comparison/test_open_volume.py"),
+        ("comparison/open_volume.py", "NORMAL_95 * sum(loop.level_std)", "0.0", "comparison/test_measured_thinning.py"),
         ("comparison/open_volume.py", "if far > own else 0.0", "if far > -1.0 else 0.0", "comparison/test_open_volume.py"),
         ("fleet/line.py", "scatter = math.sqrt(square / degrees) * arm if bends else std", "scatter = std", "fleet/test_line.py"),
         ("fleet/line.py", "0.0 if above >= limit else _crossing", "_crossing", "fleet/test_line.py"),

@@ -15,6 +15,7 @@ from gearwear.errors import InputError
 
 if TYPE_CHECKING:
     from gearwear.design.gear import Gear
+    from gearwear.design.spec import GearSpec
     from gearwear.identify.candidates import SurfaceLeft
     from gearwear.identify.gauges import Gauge, Helix
     from gearwear.identify.proposal import Proposal
@@ -177,7 +178,19 @@ def _from_numbers(arguments: Namespace) -> tuple[str, str]:
         remarks["thinning"] = "not known without a span or a dimension over pins"
     header = ["Proposed by gearwear design from measured dimensions: check it against the drawing.", best.name, ""]
     header += _remains(gauges, best) + _others(best, [proposal for proposal, _ in sound[1:]])
+    header += _measured_thinning(spec)
     return design_text(spec, header, remarks), best.name
+
+
+def _measured_thinning(spec: GearSpec) -> list[str]:
+    """What to do about a thinning that was measured on the gear itself."""
+    if not spec.thinning_measured:
+        return []
+    return [
+        "Note: thinning is as the gear was measured, and an even loss of all its flanks looks the same: thinning_from says so, and what the",
+        "teeth may have lost to be so thin is in the range that compare tells. If the drawing has it, or a tooth that never ran is measured:",
+        "put that value there and leave thinning_from out.",
+    ]
 
 
 def _number(option: str, text: str) -> float:
@@ -302,4 +315,5 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     if not USUAL[0] < 2.0 * seen.tip_radius < USUAL[1]:
         header.append(f"Note: {2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
     spec = best.gear.spec
+    header += _measured_thinning(spec)
     return design_text(spec, header, remarks), f"{seen.teeth} teeth, {best.proposal.name}"

@@ -86,8 +86,9 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     """
     scan = _Scan(measured, measured.first, measured.placed.located, worn=worn)
     look = scan.looked_at()
-    if look is not None and look[0].sides_sure:
-        scan = replace(scan, worn=look[0].worn_sides)
+    if look is not None:
+        first = look[0]
+        scan = replace(scan, worn=first.worn_sides if first.sides_sure else worn, ruled_out=first.sides_ruled_out)
     far = look is not None and is_far(*look)
     likeliest = look[0] if look is not None and far else scan.explained(look)
     again = None
@@ -117,6 +118,8 @@ class _Scan:
         That loop.
     worn : frozenset of Side or None
         Sides that are known to be worn throughout.
+    ruled_out : frozenset of frozenset of Side
+        What the loop on few cells told not to be so (`Loop.sides_ruled_out`).
     """
 
     measured: MeasuredGear
@@ -125,6 +128,7 @@ class _Scan:
     rest: SurfacePoints | None = None
     begun: Loop | None = None
     worn: frozenset[Side] | None = None
+    ruled_out: frozenset[frozenset[Side]] = frozenset()
 
     @property
     def grid(self) -> CellGrid:
@@ -156,7 +160,9 @@ class _Scan:
     def _loop(self, cells: Cells, context: Context, out: Bools | None = None) -> Loop:
         measured = self.measured
         free = not measured.root.fits_design
-        return close_loop(cells, measured.noise, context, root_free=free, worn=self.worn, out=out, begun=self.begun)
+        return close_loop(
+            cells, measured.noise, context, root_free=free, worn=self.worn, out=out, begun=self.begun, ruled_out=self.ruled_out
+        )
 
     def located_again(self, loop: Loop) -> tuple[_Scan, Relocation]:
         """The scan without the distortion that a loop found. Bands and feet were set before anything was known of it; now each point can be judged by
@@ -171,7 +177,7 @@ class _Scan:
             measured, cells = replace(measured, streamed=streamed), streamed.first.cells
         registration = replace(placed.registration, noise=noise(cells))  # without what goes up and down within a cell
         measured = replace(measured, placed=replace(placed, registration=registration, located=located))
-        return _Scan(measured, cells, located, rest, loop, self.worn), again
+        return replace(self, measured=measured, cells=cells, located=located, rest=rest, begun=loop), again
 
     def moved(self, loop: Loop, again: Relocation | None) -> MeasuredGear:
         """With a loop; the cells of a streamed scan are moved along, not its points."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.design.gear import Gear
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
@@ -38,6 +39,17 @@ class OpenVolume:
 
     @cached_property
     def limits(self) -> tuple[float, float, str] | None:
+        """`of_such_teeth`, and beyond them what the teeth would have lost were it wear that made them as thin as they were measured."""
+        known, thin = self.of_such_teeth, self.measured_thinning
+        if thin == 0.0:
+            return known
+        value, own = self.found.volume, NORMAL_95 * self.found.volume_std
+        low, high, causes = known or (max(value - own, 0.0), value + own, "")
+        why = "the thinning of the design was measured on a gear that may be worn: cut so, or worn evenly, the scan does not tell"
+        return low, high + thin, "; ".join(filter(None, (causes, why)))
+
+    @cached_property
+    def of_such_teeth(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, its own 95 % interval with them, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
         which sides are worn throughout, what each answer would be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 %
         interval, wear too faint to be found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all teeth that nothing explains, teeth thinner than drawn, and what may be thicker teeth or a ridge at the pitch line.
@@ -142,6 +154,16 @@ class OpenVolume:
         return lost if lost > self.found.volume_std else 0.0
 
     @cached_property
+    def measured_thinning(self) -> float:
+        """What the teeth would have lost were the thinning of the design an even loss, mm³, with 1.96 standard deviations of how high their flanks stand;
+        0 where that is not open (`thinning_open`)."""
+        loop, gear = self.measured.loop, self.measured.gear
+        if not thinning_open(self.measured, self.unworn_seen):
+            return 0.0
+        unsure = 0.0 if loop is None else NORMAL_95 * sum(loop.level_std)
+        return (normal_loss(gear, gear.spec.thinning) + unsure) * self._side_area
+
+    @cached_property
     def even_or_thin(self) -> float:
         """What of the volume the sides worn throughout have lost all over alike, mm³; 0 where that is within the volume's standard deviation, where
         the tolerance of the thickness is stated, and where a scan of the gear unworn shows what was made so."""
@@ -161,8 +183,9 @@ class OpenVolume:
 
     @property
     def evenly(self) -> tuple[float, float]:
-        """What the limits come to below and above the volume evenly over all flanks of one side, mm; 0 where that is no more than its own 95 % interval."""
-        limits, own = self.limits, NORMAL_95 * self.found.volume_std * (1.0 + 1e-9)
+        """What the limits of teeth as thin as the design's come to below and above the volume evenly over all flanks of one side, mm; 0 where that is no more
+        than its own 95 % interval."""
+        limits, own = self.of_such_teeth, NORMAL_95 * self.found.volume_std * (1.0 + 1e-9)
         if limits is None:
             return 0.0, 0.0
         down, up = (
@@ -194,15 +217,25 @@ def level_open(measured: MeasuredGear) -> frozenset[Side]:
     return measured.worn_sides - {face.side for face in measured.faces}
 
 
+def thinning_open(measured: MeasuredGear, unworn_seen: bool) -> bool:
+    """Whether the design's thinning may be an even loss: it was measured on a gear, and neither flanks that no mate touched nor a scan of the gear unworn are as thin."""
+    spec = measured.gear.spec
+    return spec.thinning_measured and spec.thinning > 0.0 and not unworn_seen and not measured.faces
+
+
 def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:
     """What the stated tolerance of the tooth thickness leaves open of the volume, mm³; None where none is stated or no side is worn throughout.
 
-    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r · cos β_b / cos β`` along the normal all over its flanks.
+    Teeth that are thinner by it at the reference circle may have lost all of that on the flanks of one side.
     """
     tolerance = measured.gear.spec.tolerance.thickness
     if tolerance is None or not level_open(measured):
         return None
-    gear = measured.gear
     area = sum(region.area for region in wear.regions if region.side in level_open(measured))
-    per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)  # the tolerance is of the normal arc
-    return tolerance * gear.base_radius / gear.reference_radius * per_arc * area
+    return normal_loss(measured.gear, tolerance) * area
+
+
+def normal_loss(gear: Gear, arc: float) -> float:
+    """What both flanks of a tooth together have lost along their normals, mm, that is thinner by a normal `arc` (mm) at the reference circle: ``arc r_b / r · cos β_b / cos β``."""
+    per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)
+    return arc * gear.base_radius / gear.reference_radius * per_arc

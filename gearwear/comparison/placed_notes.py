@@ -28,6 +28,11 @@ ALONE = (
     " the reference circle"
 )
 """Where the pair's profile shifts do not sum to zero they slide there, and wear of a whole side has another shape than the one looked for."""
+THINNED = (
+    "the thinning of the design, {thinning:.3f} mm, was measured on a gear that may be worn: depths, and how thin the teeth have become, are told from"
+    " teeth that thin; what an even loss would have taken off them is in the limits of the volume alone"
+)
+"""An even loss of all flanks looks like teeth that were cut thin."""
 SMOOTHED = "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are"
 
 

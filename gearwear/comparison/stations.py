@@ -17,8 +17,8 @@ from gearwear.comparison.closing import measure
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import PutBack, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
-from gearwear.comparison.open_volume import even_loss, level_open
-from gearwear.comparison.placed_notes import ALONE
+from gearwear.comparison.open_volume import even_loss, level_open, thinning_open
+from gearwear.comparison.placed_notes import ALONE, THINNED
 from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
@@ -200,6 +200,7 @@ def compare(
         changes=changes,
         notes=(
             *measured.doubts,  # what changes the meaning of numbers first: a terminal shows the first few
+            *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn is not None) else ()),
             *worn_notes(measured, wear, unworn is not None),
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
             *edge_notes(wear),

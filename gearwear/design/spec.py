@@ -63,6 +63,8 @@ class GearSpec:
     thinning : float
         Reduction of the tooth's normal arc thickness at the reference circle, mm, by a side cut of the rack
         (the root circle stays).
+    thinning_measured : bool
+        True where that was measured on a gear that may be worn, by a scan or by gauges: an even loss of all its flanks is in it.
     bore_diameter, tip_chamfer, end_chamfer : float
         mm; 0 is none. Chamfers are 45°, both legs of this length.
     tip_chamfer_land : float or None
@@ -136,6 +138,7 @@ class GearSpec:
     protuberance_angle: float | None = None
     tip_chamfer_land: float | None = None
     modified_between: tuple[float, float] | None = None
+    thinning_measured: bool = False
 
     def __post_init__(self) -> None:
         try:

@@ -80,19 +80,19 @@ class Beside:
         return tuple(groups)
 
     @cached_property
-    def _squared(self) -> dict[int, tuple[Floats, Floats]]:
-        """Of each candidate of many columns: the sums of all columns with its own, (p, k), after these are made square to each other and of length 1,
+    def _known(self) -> dict[int, tuple[Floats, Floats]]:
+        """What `_squared` has found."""
+        return {}
+
+    def _squared(self, at: int, which: Ints) -> tuple[Floats, Floats]:
+        """Of candidate `at` of many columns: the sums of all columns with its own, (p, k), after these are made square to each other and of length 1,
         and their moment, (k,)."""
-        result = {}
-        for block in self._blocks:
-            for at, which in zip(block.at.tolist(), block.which, strict=True):
-                if len(which) < MANY:
-                    continue
-                length = np.sqrt(self.own[which])
-                scaled = self.information[which[:, None], which] / (length[:, None] * length)
-                way = _to_unit(scaled) / length[:, None]
-                result[at] = _and_nothing(self.information[:, which] @ way), self.moment[which] @ way
-        return result
+        if at not in self._known:
+            length = np.sqrt(self.own[which])
+            scaled = self.information[which[:, None], which] / (length[:, None] * length)
+            way = _to_unit(scaled) / length[:, None]
+            self._known[at] = _and_nothing(self.information[:, which] @ way), self.moment[which] @ way
+        return self._known[at]
 
     @cached_property
     def _rows(self) -> tuple[Floats, Floats, Floats]:
@@ -151,7 +151,9 @@ class Beside:
             fine, size = good[:, which].all(axis=2), which.shape[1]
             if size >= MANY:
                 for place, at in enumerate(block.at.tolist()):
-                    sums, moment = self._squared[at]
+                    if not fine[:, place].any():
+                        continue
+                    sums, moment = self._squared(at, which[place])
                     own = sums[bases] / root[..., None]
                     beyond = moment - (amplitudes[:, None] @ own)[:, 0]
                     inner, mixed = scaled - own @ own.swapaxes(1, 2), own @ beyond[..., None]

@@ -5,8 +5,10 @@ So what a sum over all columns takes goes with what is not zero: a freedom for e
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -36,6 +38,12 @@ class Stretch:
     which: Ints
     values: Floats
 
+    @classmethod
+    def of(cls, rows: slice, values: Floats) -> Stretch:
+        """Of the values (n, p) of all columns there."""
+        which = np.flatnonzero(values.any(axis=0))
+        return cls(rows, which, np.ascontiguousarray(values[:, which]))
+
 
 @dataclass(frozen=True, slots=True)
 class CellColumns:
@@ -56,12 +64,16 @@ class CellColumns:
     @classmethod
     def of(cls, values: Floats, cuts: Ints) -> CellColumns:
         """Columns (m, p) from their values; a stretch begins at each of `cuts`, and the last ends at m."""
-        stretches = []
-        for start, stop in zip(cuts, [*cuts[1:], len(values)], strict=True):
-            rows = slice(int(start), int(stop))
-            which = np.flatnonzero(values[rows].any(axis=0))
-            stretches.append(Stretch(rows, which, np.ascontiguousarray(values[rows][:, which])))
-        return cls(len(values), values.shape[1], tuple(stretches))
+        return cls.of_pieces(values[rows] for rows in between(cuts, len(values)))
+
+    @classmethod
+    def of_pieces(cls, pieces: Iterable[Floats]) -> CellColumns:
+        """Columns from their values (n, p) on each stretch in turn."""
+        stretches, start, count = list[Stretch](), 0, 0
+        for piece in pieces:
+            stretches.append(Stretch.of(slice(start, start + len(piece)), piece))
+            start, count = start + len(piece), piece.shape[1]
+        return cls(start, count, tuple(stretches))
 
     @classmethod
     def side_by_side(cls, parts: Sequence[CellColumns]) -> CellColumns:
@@ -74,17 +86,25 @@ class CellColumns:
         return cls(parts[0].rows, int(starts[-1]), tuple(joined))
 
     @classmethod
-    def gathered(cls, blocks: Iterable[Floats], cuts: Ints, together: int = 64) -> CellColumns:
+    def gathered(cls, blocks: Iterable[Floats | CellColumns], cuts: Ints, together: int = 64) -> CellColumns:
         """Blocks of columns (m, q) behind one another; no more than about `together` of them are ever held with their zeros."""
         parts, waiting = list[CellColumns](), list[Floats]()
-        for block in blocks:
-            waiting.append(block)
-            if sum(one.shape[1] for one in waiting) >= together:
+
+        def put_away() -> None:
+            if waiting:
                 parts.append(cls.of(np.hstack(waiting), cuts))
-                waiting = []
-        if waiting or not parts:
-            parts.append(cls.of(np.hstack(waiting) if waiting else np.zeros((int(cuts[-1]), 0)), cuts))
-        return cls.side_by_side(parts)
+                waiting.clear()
+
+        for block in blocks:
+            if isinstance(block, CellColumns):
+                put_away()
+                parts.append(block)
+            else:
+                waiting.append(block)
+            if sum(one.shape[1] for one in waiting) >= together:
+                put_away()
+        put_away()
+        return cls.side_by_side(parts or [cls.of(np.zeros((int(cuts[-1]), 0)), cuts)])
 
     @property
     def cuts(self) -> Ints:
@@ -107,13 +127,19 @@ class CellColumns:
         return result
 
 
+def between(cuts: Ints, rows: int) -> list[slice]:
+    """The stretches of so many cells that begin at each of `cuts`."""
+    return [slice(start, stop) for start, stop in pairwise([*cuts.tolist(), rows])]
+
+
 def cuts_among(cuts: Ints, rows: Ints) -> Ints:
     """First of some cells `rows` (n,) of each stretch that has any of them."""
     return np.unique(np.searchsorted(rows, cuts[cuts <= rows[-1]])) if len(rows) else np.zeros(0, dtype=np.int64)
 
 
-def cuts_of(grid: CellGrid) -> Ints:
-    """First cells of the stretches of a grid: some whole tooth sides, or teeth, of one surface."""
+def cuts_of(grid: CellGrid, share: float = 1.0) -> Ints:
+    """First cells of the stretches of a grid: some whole tooth sides, or teeth, of one surface; so many that `share` of their cells is a long enough stretch."""
+    least = math.ceil(LEAST_ROWS / share)
     across = {
         FLANK: grid.rows * grid.flank,
         FILLET: grid.rows * grid.fillet,
@@ -122,7 +148,7 @@ def cuts_of(grid: CellGrid) -> Ints:
     }
     units = across | {END_LOW: 2 * grid.ring, END_HIGH: 2 * grid.ring, BORE: grid.rows}
     cuts = [
-        np.arange(start, start + size, units[surface] * max(1, -(-LEAST_ROWS // units[surface])))
+        np.arange(start, start + size, units[surface] * max(1, -(-least // units[surface])))
         for surface, (start, size) in grid.blocks.items()
     ]
     return np.concatenate(cuts)

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearwear.arrays import Floats, Ints
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
 from gearwear.design.twist import has_screw
-from gearwear.diagnose.columns import CellColumns, cuts_of
+from gearwear.diagnose.columns import CellColumns, between, cuts_of
 from gearwear.diagnose.effects.base import Context, Effect, Kind, Shape
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.placing.cells import CellGrid, Cells
@@ -104,26 +104,53 @@ def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context
     motion = np.array([0, 1, 5]) if context.planar else np.arange(6)
     if has_screw(context.gear) and not context.surfaces & {END_LOW, END_HIGH}:
         motion = motion[motion != 2]  # the screw along the teeth is not seen: the height stays as registration holds it
-    seen = cells.seen
-    points = cells.points.take(seen)
+    seen, cuts = cells.seen, cuts_of(cells.grid)
+    whole = seen, cells.points.take(seen)
+    pieces = [(seen[rows], cells.points.take(rows.start + np.flatnonzero(seen[rows]))) for rows in between(cuts, len(seen))]
     candidates = list[Candidate]()
 
-    def blocks() -> Iterator[Floats]:
+    def on(part: tuple[Bools, SurfacePoints], effect: Effect, shape: Shape) -> Floats:
+        """Columns over some cells, of which those seen have points."""
+        own, points = part
+        values = cell_basis(effect, points, context, shape, cells.grid)
+        basis = np.zeros((len(own), values.shape[1]))
+        basis[own] = values
+        return basis
+
+    def blocks() -> Iterator[Floats | CellColumns]:
         yield np.where(seen[:, None], cells.motion[:, motion], 0.0)
         start = len(motion)
         for effect in effects:
             if not effect.applies(context):
                 continue
             for shape in effect.shapes(context):
-                values = cell_basis(effect, points, context, shape, cells.grid)
-                basis = np.zeros((len(seen), values.shape[1]))
-                basis[seen] = values
-                candidates.append(Candidate(effect, shape, np.arange(start, start + values.shape[1])))
-                start += values.shape[1]
-                yield basis
+                # Each column of a freedom for every tooth is zero on nearly all cells: in full they are held on a stretch at a time.
+                block: Floats | CellColumns = (
+                    CellColumns.of_pieces(on(piece, effect, shape) for piece in pieces)
+                    if effect.tooth_specific
+                    else on(whole, effect, shape)
+                )
+                count = block.count if isinstance(block, CellColumns) else block.shape[1]
+                candidates.append(Candidate(effect, shape, np.arange(start, start + count)))
+                start += count
+                yield block
 
-    columns = CellColumns.gathered(blocks(), cuts_of(cells.grid))
+    columns = CellColumns.gathered(blocks(), cuts)
     return Dictionary(columns, np.arange(len(motion)), motion, tuple(candidates))
+
+
+def with_worn(dictionary: Dictionary, cells: Cells, context: Context) -> Dictionary:
+    """The dictionary of the same scan with other sides worn: few effects have other columns then (`Effect.by_worn`), and these stand behind all others."""
+    seen, points = cells.seen, cells.points.take(cells.seen)
+    for place, candidate in enumerate(dictionary.candidates):
+        if candidate.effect.by_worn:
+            basis = np.zeros((len(seen), len(candidate.columns)))
+            basis[seen] = cell_basis(candidate.effect, points, context, candidate.shape, cells.grid)
+            columns = np.arange(dictionary.count, dictionary.count + basis.shape[1])
+            candidates = list(dictionary.candidates)
+            candidates[place] = replace(candidate, columns=columns)
+            dictionary = replace(dictionary.with_columns(basis), candidates=tuple(candidates))
+    return dictionary
 
 
 def cell_basis(effect: Effect, points: SurfacePoints, context: Context, shape: Shape, grid: CellGrid) -> Floats:

@@ -74,7 +74,8 @@ def on_few_cells(fit: Fit, sound: Bools, noise: float) -> tuple[Fit, Bools]:
         for start in range(0, dictionary.count, TOGETHER):
             yield mean @ dictionary.take(np.arange(start, min(start + TOGETHER, dictionary.count)))
 
-    columns = CellColumns.gathered(averaged(), cuts_of(grid), TOGETHER)
+    # Of the teeth that are left out nothing is seen: stretches are as much longer.
+    columns = CellColumns.gathered(averaged(), cuts_of(grid, float(kept.mean())), TOGETHER)
     together = fit.cells.grid.rows // grid.rows
     apart = np.abs(np.subtract.outer(np.arange(together), np.arange(together)))
     covariance = CellCovariance(

@@ -171,6 +171,8 @@ class Loop(Card):
         Single flanks that are worn all over, and were left out; None where none had to be.
     sides_sure : bool
         Whether it is beyond doubt which sides are worn throughout (`SideCosts.beyond_doubt`).
+    sides_ruled_out : frozenset of frozenset of Side
+        Sides that beyond doubt are not worn throughout together, with the others sound (`SideCosts.ruled_out`).
     untold : UntoldFlanks or None
         Flanks that are no datum where every tooth has amounts of its own; None where each is.
     """
@@ -198,6 +200,7 @@ class Loop(Card):
     correlations: tuple[Correlation, ...] = ()
     worn_flanks: Bools | None = None
     sides_sure: bool = False
+    sides_ruled_out: frozenset[frozenset[Side]] = frozenset()
     untold: UntoldFlanks | None = None
 
     @property

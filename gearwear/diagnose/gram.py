@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -150,13 +151,14 @@ def _weighted(columns: Floats | tuple[CellColumns, ...], root: Floats, rows: Int
             yield at, np.arange(columns.shape[1]), columns[at] * root[at, None]
         return
     starts = np.cumsum([0, *(block.count for block in columns)]).tolist()
-    ends = np.searchsorted(rows, [*columns[0].cuts, len(root)])
-    for used, pieces in zip(np.diff(ends), zip(*(block.stretches for block in columns), strict=True), strict=True):
-        if used == 0:
+    ends = np.searchsorted(rows, [*columns[0].cuts, len(root)]).tolist()
+    for (first, last), pieces in zip(pairwise(ends), zip(*(block.stretches for block in columns), strict=True), strict=True):
+        if first == last:
             continue
-        at, which = pieces[0].rows, [piece.which + start for piece, start in zip(pieces, starts, strict=False)]
-        own, part, filled = root[at, None], np.empty((len(pieces[0].values), sum(map(len, which)))), 0
+        at, which = rows[first:last], [piece.which + start for piece, start in zip(pieces, starts, strict=False)]
+        own, part, filled = root[at, None], np.empty((len(at), sum(map(len, which)))), 0
+        here = at - pieces[0].rows.start if len(at) < len(pieces[0].values) else slice(None)
         for piece in pieces:
             filled += len(piece.which)
-            np.multiply(piece.values, own, out=part[:, filled - len(piece.which) : filled])
+            np.multiply(piece.values[here], own, out=part[:, filled - len(piece.which) : filled])
         yield at, np.concatenate(which), part

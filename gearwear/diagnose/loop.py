@@ -15,7 +15,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.active_face import active_faces
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
-from gearwear.diagnose.dictionary import Candidate, build_dictionary
+from gearwear.diagnose.dictionary import Candidate, Dictionary, build_dictionary, with_worn
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
@@ -79,6 +79,7 @@ def close_loop(
     worn: frozenset[Side] | None = None,
     out: Bools | None = None,
     begun: Loop | None = None,
+    ruled_out: frozenset[frozenset[Side]] = frozenset(),
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -100,6 +101,8 @@ def close_loop(
         Cells that a look at fewer cells left out because they look worn (`left_out`): the search begins without them.
     begun : Loop or None
         What was found before the scan was located again: the search begins with its effects as well as with none.
+    ruled_out : frozenset of frozenset of Side
+        Sides that a first look showed not to be worn throughout together (`Loop.sides_ruled_out`).
 
     Returns
     -------
@@ -119,8 +122,12 @@ def close_loop(
         always |= {ROOT_FORM}
         made = tuple(effect for effect in made if effect.group != LEVEL_GROUP or effect.kind is not Kind.MANUFACTURE)
 
+    every_candidate = build_dictionary(cells, made, context)
+
     def searched_without(sides: frozenset[Side]) -> Searched:
-        return _first_search(cells, noise, replace(context, worn=sides), made, always, out, apart, begun)
+        without = replace(context, worn=sides)
+        dictionary = with_worn(every_candidate, cells, without) if sides else every_candidate
+        return _first_search(cells, noise, without, dictionary, always, out, apart, begun)
 
     plain = searched_without(alone)
     low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
@@ -133,7 +140,7 @@ def close_loop(
         for face in context.faces:
             told |= (cells.points.surface <= FILLET) & face.worn(cells.points, cells.grid.row_height)
         others_alone = replace(plain.fit, cells=cells.without(told)) if told.any() else plain.fit
-        costs = side_costs(others_alone, plain.problem, plain.model, noise).beside(ran)
+        costs = side_costs(others_alone, plain.problem, plain.model, noise, ruled_out).beside(ran)
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == alone else searched_without(sides), noise, always)
@@ -148,7 +155,10 @@ def close_loop(
     named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
     if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
         named = tuple(_or_smoothing(effect) for effect in named)
-    return replace(taken, effects=named, others=others, sides_sure=not refuted and not apart.any() and costs.beyond_doubt)
+    taken = replace(taken, effects=named, others=others)
+    if refuted or apart.any():
+        return taken
+    return replace(taken, sides_sure=costs.beyond_doubt, sides_ruled_out=costs.ruled_out)
 
 
 def _with_margins(context: Context, cells: Cells, worn: frozenset[Side] | None) -> tuple[Context, frozenset[Side]]:
@@ -211,14 +221,13 @@ def _first_search(
     cells: Cells,
     noise: float,
     context: Context,
-    effects: tuple[Effect, ...],
+    dictionary: Dictionary,
     always: frozenset[str],
     out: Bools | None,
     apart: Bools,
     begun: Loop | None,
 ) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out, and those `apart`."""
-    dictionary = build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     sound = sound_cells(cells, context.worn, context.fillets_told, context.faces) & ~rounded_ends(cells, noise) & ~apart
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2

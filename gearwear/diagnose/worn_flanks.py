@@ -100,6 +100,19 @@ class Levels:
         much (Bartlett 1938)."""
         return float(self.count - (self.base.shape[1] + 0.5 * self.wide**2) / self.wide)
 
+    @cached_property
+    def _explained(self) -> dict[tuple[tuple[int, ...], tuple[int, ...]], Explained]:
+        return {}
+
+    def explained(self, terms: tuple[int, ...] = (), low: tuple[int, ...] = ()) -> Explained:
+        """With some terms and some flanks, sorted, that lie below. Searches from other starts come by the same: each is worked out once."""
+        return self._explained.setdefault((terms, low), Explained(self, terms, low))
+
+    @cached_property
+    def value_and_terms(self) -> Floats:
+        """The levels and the columns of all terms side by side, (w n, 1 + …)."""
+        return np.hstack([self.value[:, None], *(term.columns for term in self.terms)])
+
 
 @dataclass(frozen=True)
 class Explained:
@@ -118,6 +131,16 @@ class Explained:
     terms: tuple[int, ...] = ()
     low: tuple[int, ...] = ()
 
+    def with_low(self, low: Iterable[int]) -> Explained:
+        """With these flanks below."""
+        return self.levels.explained(self.terms, tuple(sorted(low)))
+
+    def with_term(self, term: int) -> Explained:
+        return self.levels.explained((*self.terms, term), self.low)
+
+    def without_term(self, term: int) -> Explained:
+        return self.levels.explained(tuple(i for i in self.terms if i != term), self.low)
+
     @cached_property
     def _with_own(self) -> FittedLevels:
         """With a depth of its own on every one of the low flanks."""
@@ -129,7 +152,7 @@ class Explained:
         own[list(self.low), np.arange(len(self.low))] = -1.0
         return own
 
-    @cached_property
+    @property
     def _columns(self) -> Floats:
         return np.hstack([self.levels.base, *(self.levels.terms[i].columns for i in self.terms)])
 
@@ -155,7 +178,8 @@ class Explained:
     @property
     def possible(self) -> bool:
         """Whether no flank has gained metal."""
-        return min(self._with_own.amplitudes[self._columns.shape[1] :], default=1.0) > 0.0
+        amplitudes = self._with_own.amplitudes
+        return min(amplitudes[len(amplitudes) - len(self.low) :], default=1.0) > 0.0
 
     @property
     def below(self) -> Floats:
@@ -169,12 +193,12 @@ class Explained:
         pull = np.clip(scatter[0, 1] / np.diag(scatter)[1::-1], -1.0, 1.0)
         return np.asarray(rest - pull * other, dtype=np.float64)
 
-    @property
+    @cached_property
     def gains(self) -> Floats:
         """About what each term would lower the misfit by, less its price; -inf for those that are in."""
         fitted, levels = self._with_own, self.levels
         basis = np.linalg.qr(_white(np.hstack([self._columns, self._own]), fitted.root))[0]
-        every = _white(np.hstack([levels.value[:, None], *(term.columns for term in levels.terms)]), fitted.root)
+        every = _white(levels.value_and_terms, fitted.root)
         every = every - basis @ (basis.T @ every)
         rest = every[:, 0]
         scattered = _scattered(levels, rest[:, None])
@@ -305,14 +329,14 @@ def low_flanks(levels: Levels) -> tuple[int, ...]:
     every = replace(levels, terms=(*levels.terms, *levels.nameless))
     without, beside = _cheapest(every, flanks=False), _cheapest(levels, flanks=True)
     for side in Side:  # chance makes some of a side the lowest
-        other = replace(beside, low=tuple(i for i in beside.low if i % levels.wide != side.index))
+        other = beside.with_low(i for i in beside.low if i % levels.wide != side.index)
         beside = other if other.cost < beside.cost + rules().close else beside
     return beside.low if beside.cost < without.cost - rules().close else ()
 
 
 def _cheapest(levels: Levels, flanks: bool) -> Explained:
     """Flanks and terms chosen in turn, until neither lowers the cost."""
-    plain = Explained(levels)
+    plain = levels.explained()
     starts = [plain, _with_terms(plain)]
     if flanks:
         starts += [_trimmed(levels, sides) for sides in ((Side.LEFT,), (Side.RIGHT,), tuple(Side))]
@@ -331,10 +355,9 @@ def _settled(one: Explained, flanks: bool) -> Explained:
 def _trimmed(levels: Levels, sides: tuple[Side, ...]) -> Explained:
     """The terms that explain the upper flanks of some sides best: the lower ones, as many as may be worn, tell nothing (least trimmed squares,
     Rousseeuw 1984)."""
-    one = Explained(levels)
+    one = levels.explained()
     for _ in range(ROUNDS):
-        low = sorted(i for side in sides for i in _lowest(one, side))
-        again = _with_terms(replace(one, low=tuple(low)))
+        again = _with_terms(one.with_low(i for side in sides for i in _lowest(one, side)))
         if again == one:
             break
         one = again
@@ -358,7 +381,7 @@ def _with_flanks(one: Explained) -> Explained:
         before = one
         for side in Side:
             lowest, others = _lowest(one, side), [i for i in one.low if i % one.levels.wide != side.index]
-            options = (replace(one, low=tuple(sorted([*others, *lowest[:k]]))) for k in range(len(lowest) + 1))
+            options = (one.with_low([*others, *lowest[:k]]) for k in range(len(lowest) + 1))
             likely = [option for option in options if option.possible]
             one = _least(likely, one) if one.possible else min(likely, key=lambda option: option.cost, default=one)
         if one is before:
@@ -371,11 +394,9 @@ def _with_terms(one: Explained) -> Explained:
     while True:
         gains = one.gains
         near = [int(i) for i in np.argsort(gains)[::-1][:TRIED] if gains[i] > 0.0]
-        options = [replace(one, terms=(*one.terms, i)) for i in near]
-        options += [replace(one, terms=tuple(j for j in one.terms if j != i)) for i in one.terms]
-        options += [
-            replace(option, terms=tuple(j for j in option.terms if j != i)) for option in options[: len(near)] for i in one.terms
-        ]
+        options = [one.with_term(i) for i in near]
+        options += [one.without_term(i) for i in one.terms]
+        options += [option.without_term(i) for option in options[: len(near)] for i in one.terms]
         best = _least(options, one)
         if best is one:
             return one

@@ -24,7 +24,7 @@ from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
 from gearwear.design.tolerance import profile_form_tolerance
-from gearwear.diagnose.columns import CellColumns, Stretch, cuts_among, cuts_of
+from gearwear.diagnose.columns import CellColumns, Stretch, between, cuts_among
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
@@ -42,6 +42,8 @@ from gearwear.placing.edges import rounded_ends
 from gearwear.processors import each
 
 NO_SIDE: frozenset[Side] = frozenset()
+REMEMBERED = 8
+"""Models whose columns are kept; numerical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,11 +79,16 @@ class SideCosts:
         return replace(self, by_sides={worn: cost for worn, cost in self.by_sides.items() if not worn & ran})
 
     @property
+    def ruled_out(self) -> frozenset[frozenset[Side]]:
+        """Hypotheses that cost so much more than the chosen one that more cells would say the same."""
+        least = self.by_sides[self.chosen]
+        least += max(rules().close, rules().beyond_doubt * least)
+        return frozenset(worn for worn, cost in self.by_sides.items() if cost > least)
+
+    @property
     def beyond_doubt(self) -> bool:
-        """Whether every other hypothesis costs so much more than the chosen one that more cells would say the same."""
-        taken = self.chosen
-        least = max(rules().close, rules().beyond_doubt * self.by_sides[taken])
-        return all(cost > self.by_sides[taken] + least for worn, cost in self.by_sides.items() if worn != taken)
+        """Whether every other hypothesis than the chosen one is ruled out."""
+        return self.ruled_out == self.by_sides.keys() - {self.chosen}
 
     @property
     def not_excluded(self) -> tuple[frozenset[Side], ...]:
@@ -97,7 +104,9 @@ class SideCosts:
         )
 
 
-def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCosts:
+def side_costs(
+    fit: Fit, problem: Problem, model: Model, noise: float, ruled_out: frozenset[frozenset[Side]] = frozenset()
+) -> SideCosts:
     """What it costs that no side, the left, the right or both are worn throughout.
 
     Parameters
@@ -109,6 +118,8 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
         What that search chose.
     noise : float
         Scatter of points, mm.
+    ruled_out : frozenset of frozenset of Side
+        Hypotheses that are not asked about.
 
     Returns
     -------
@@ -123,14 +134,14 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
     profiles = (shared[:, :0], price[:0]), (shared, price), by_side
     plain, alike, apart = each([partial(scan.made, model, *profile) for profile in profiles])
     made = min(plain.cost, alike.cost)
-    answers = [frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)]
+    answers = [sides for sides in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)) if sides not in ruled_out]
     unworn = min(made, apart.cost)
     tried = [partial(scan.least_worn_cost, model, sides, apart.cost < made, unworn) for sides in answers]
     if apart.cost < made:
         # One side worn, and the other cut to a profile of its own.
         for side in Side:
             own = apart.needed[apart.needed // shared.shape[1] == side.opposite.index]
-            if len(own):
+            if len(own) and frozenset({side}) not in ruled_out:
                 beside, paid = scan.beside(by_side[0][:, own]), _price(by_side[1][own])
                 answers.append(frozenset({side}))
                 tried.append(partial(beside.slid_cost, model, side, unworn, paid))
@@ -190,6 +201,11 @@ class _Scan:
         return {}
 
     @cached_property
+    def _taken(self) -> dict[tuple[int, ...], Floats]:
+        """Columns of the last models that were asked for."""
+        return {}
+
+    @cached_property
     def _worn(self) -> dict[tuple[tuple[int, ...], bytes], list[_Loss]]:
         """Losses of given shapes beside given models."""
         return {}
@@ -225,8 +241,13 @@ class _Scan:
 
     def columns(self, model: Model) -> Floats:
         """Columns of the pose and of a model, on the cells that a fit may use."""
-        which = np.concatenate([self.fit.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
-        return self.fit.dictionary.take(which, self.rows)
+        key = _columns_of(model)
+        if key not in self._taken:
+            which = np.concatenate([self.fit.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
+            self._taken[key] = self.fit.dictionary.take(which, self.rows)
+            for old in list(self._taken)[:-REMEMBERED]:
+                del self._taken[old]
+        return self._taken[key]
 
     def robust(
         self,
@@ -410,7 +431,7 @@ class _Scan:
         loss = law @ fitted.amplitudes[-law.shape[1] :]
         by_tooth = self.shares(loss[self.rows])
         alone = self.robust(self.columns(searched), by_tooth, first=fitted.weight)
-        searched = self._searched(searched, _by_tooth(self.fit.cells, loss), alone.weight)
+        searched = self._searched(searched, _by_tooth(self.fit.cells, loss, self.fit.dictionary.first.cuts), alone.weight)
         alone = self.robust(self.columns(searched), by_tooth, first=alone.weight)
         last = slice(len(alone.amplitudes) - by_tooth.count, None)
         share = alone.amplitudes[last]
@@ -509,16 +530,15 @@ def _lost_on(sides: Ints) -> frozenset[Side]:
     return frozenset(side for side in Side if np.isin(sides, (0, int(side))).any())
 
 
-def _by_tooth(cells: Cells, loss: Floats) -> CellColumns:
-    """The common loss with a share of its own on every flank, (m, k)."""
-    points, cuts = cells.points, cuts_of(cells.grid)
+def _by_tooth(cells: Cells, loss: Floats, cuts: Ints) -> CellColumns:
+    """The common loss with a share of its own on every flank, (m, k), by stretches that begin at `cuts`."""
+    points = cells.points
     flank = points.tooth.astype(np.int64) * 2 + (points.side > 0)
     worn = np.flatnonzero(np.bincount(flank[loss != 0.0], minlength=2 * cells.grid.gear.teeth))
     place = np.full(2 * cells.grid.gear.teeth, -1)
     place[worn] = np.arange(len(worn))
     stretches = []
-    for start, stop in zip(cuts, [*cuts[1:], len(loss)], strict=True):
-        rows = slice(int(start), int(stop))
+    for rows in between(cuts, len(loss)):
         which, lost = np.where(loss[rows] != 0.0, place[flank[rows]], -1), loss[rows, None]
         here = np.unique(which[which >= 0])
         stretches.append(Stretch(rows, here, np.where(which[:, None] == here, lost, 0.0)))

@@ -289,7 +289,8 @@ def spec_of(proposal: Proposal, face_width: float, body_diameter: float = 0.0, n
         return GearSpec(
             name, proposal.teeth, proposal.module.mm, face_width, normal_pressure_angle=proposal.pressure_angle,
             profile_shift=proposal.profile_shift, addendum=round(depth.addendum - proposal.shortening, 6), dedendum=depth.dedendum,
-            thinning=proposal.thinning, helix_angle=proposal.helix_angle, internal=True, rim_diameter=body_diameter,
+            thinning=proposal.thinning, thinning_measured=proposal.thinning > 0.0, helix_angle=proposal.helix_angle, internal=True,
+            rim_diameter=body_diameter,
         )  # fmt: skip
     slope = (1.0 - math.sin(proposal.pressure_angle)) / math.cos(proposal.pressure_angle)
     half_space = 0.25 * math.pi + 0.5 * proposal.thinning / proposal.module.mm
@@ -305,6 +306,7 @@ def spec_of(proposal: Proposal, face_width: float, body_diameter: float = 0.0, n
         dedendum=depth.dedendum,
         rack_tip_radius=max(0.0, min(0.3, math.floor(100.0 * room) / 100.0)),
         thinning=proposal.thinning,
+        thinning_measured=proposal.thinning > 0.0,
         bore_diameter=body_diameter,
         helix_angle=proposal.helix_angle,
         gap=gap,

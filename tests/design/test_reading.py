@@ -3,6 +3,7 @@ import math
 import pytest
 
 from gearwear.design import Baseline, parse_design, read_design
+from gearwear.design.files.writing import design_text
 from gearwear.errors import InputError
 
 PAPER = """
@@ -221,3 +222,17 @@ def test_a_file_as_windows_writes_it(tmp_path):
     plain = read_design(_write(tmp_path, PAPER)).gears
     for text in (PAPER.replace("\n", "\r\n").encode(), b"\xef\xbb\xbf" + PAPER.encode(), PAPER.encode("utf-16")):
         assert read_design(_write(tmp_path, text)).gears == plain
+
+
+def test_a_thinning_says_where_it_comes_from(tmp_path):
+    """What `gearwear design` writes reads back; the drawing's is the usual one, and needs no word."""
+    (measured,) = parse_design({"gear": GEAR | {"thinning": 0.08, "thinning_from": "measured"}}).gears.values()
+    assert measured.spec.thinning_measured and "thinning_from" in design_text(measured.spec)
+    assert read_design(_write(tmp_path, design_text(measured.spec))).gears["gear"].spec == measured.spec
+    for said in ({}, {"thinning_from": "drawing"}):
+        (drawn,) = parse_design({"gear": GEAR | {"thinning": 0.08} | said}).gears.values()
+        assert not drawn.spec.thinning_measured and "thinning_from" not in design_text(drawn.spec)
+    table = _write(tmp_path, "key,value,unit\nz,20,\nm,2,mm\nb,10,mm\nthinning,0.08,mm\nthinning_from,measured,\n", "drawing.csv")
+    assert read_design(table).gears["gear"].spec == measured.spec
+    _refused({"gear": GEAR | {"thinning_from": "scan"}}, "thinning_from = 'scan': must be drawing or measured")
+    _refused({"gear": GEAR | {"thinning_from": 1}}, "must be a word in quotes")

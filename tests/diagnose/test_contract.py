@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import re
+from dataclasses import replace
 from pathlib import Path
 from string import Formatter
 
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 
 from gearwear.design import quantity
+from gearwear.design.side import Side
 from gearwear.design.surface import locate
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.base import CatalogueEffect, Effect, Kind
@@ -160,6 +162,19 @@ def test_basis_belongs_to_each_foot_alone(effect, numbers):
     mixed = points.take(order).with_deviation(np.full(len(points), np.nan))
     for shape in effect.shapes(about)[:4]:
         np.testing.assert_array_equal(effect.basis(mixed, about, shape), effect.basis(points, about, shape)[order])
+
+
+@every_gear
+@every_effect
+def test_what_depends_on_the_sides_that_are_worn_says_so(effect, numbers):
+    """The other columns are kept where a scan is looked at with other sides worn."""
+    points, about, other = feet(numbers, CLOSE), context(numbers), False
+    for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
+        without = replace(about, worn=worn)
+        assert effect.applies(without) == effect.applies(about) and effect.shapes(without) == effect.shapes(about)
+        bases = ([effect.basis(points, one, shape) for one in (about, without)] for shape in effect.shapes(about))
+        other |= any(not np.array_equal(*pair) for pair in bases)
+    assert other == effect.by_worn
 
 
 @every_gear

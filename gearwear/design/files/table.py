@@ -159,7 +159,7 @@ def _key(text: str, line: int) -> tuple[str, str]:
 
 
 def _value(name: str, value: str, unit: str, separator: str, line: int) -> int | float | str | bool:
-    if name == "baseline" or name in WORDS:
+    if name in ("baseline", "thinning_from") or name in WORDS:
         return value
     if name == "internal":
         if value.lower() not in ("true", "false", "yes", "no", "0", "1"):

@@ -23,7 +23,17 @@ from gearwear.design.files.sections import (
     parse_weighing,
 )
 from gearwear.design.files.table import parse_table
-from gearwear.design.files.values import check_keys, exclusive, finite_number, number_or, quoted_word, shown_key, unknown
+from gearwear.design.files.values import (
+    MEASURED,
+    THINNING_FROM,
+    check_keys,
+    exclusive,
+    finite_number,
+    number_or,
+    quoted_word,
+    shown_key,
+    unknown,
+)
 from gearwear.design.gear import Gear
 from gearwear.design.limits import Limits
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
@@ -61,6 +71,7 @@ GEAR_KEYS = (
     "root_diameter",
     *LENGTHS,
     *RATIOS,
+    "thinning_from",
     "internal",
     "cutter_teeth",
     *MODIFICATION_KEYS,
@@ -297,8 +308,17 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         if "protuberance_angle" in table
         else None,
         modified_between=None,
+        thinning_measured=_measured_thinning(part, table),
         **values,
     )
+
+
+def _measured_thinning(part: str, table: dict[str, Any]) -> bool:
+    """Whether the thinning was measured on a gear, and not drawn."""
+    origin = quoted_word(part, table, "thinning_from") if "thinning_from" in table else "drawing"
+    if origin not in THINNING_FROM:
+        raise InputError(f"[{part}] thinning_from = {shown(origin)}: must be {' or '.join(THINNING_FROM)}")
+    return origin == MEASURED
 
 
 def _cutter_teeth(part: str, table: dict[str, Any]) -> int | None:

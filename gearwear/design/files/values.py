@@ -13,7 +13,9 @@ from gearwear.errors import InputError
 
 MOST_LISTED = 20
 """Keys of a gear that the message on an unknown one lists."""
-
+MEASURED = "measured"
+THINNING_FROM = ("drawing", MEASURED)
+"""Where a thinning comes from: the drawing, or a gear that was measured and may be worn."""
 
 Default = TypeVar("Default")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from gearwear.design.files.values import MEASURED
 from gearwear.design.modification import AMOUNTS, FlankModification
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
@@ -58,7 +59,7 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     thinning = 0                         # mm, arc at the reference circle
     """
     check_even_chamfer(spec, "a design file")
-    values: dict[str, float] = {"internal": True} if spec.internal else {}
+    values: dict[str, float | str] = {"internal": True} if spec.internal else {}
     values["teeth"] = spec.teeth
     pitch = diametral_pitch(spec.normal_module)
     units = dict(UNITS)
@@ -74,6 +75,11 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     values["face_width"] = spec.face_width
     for key in ("profile_shift", "addendum", "dedendum", *(() if spec.internal else ("rack_tip_radius",)), "thinning"):
         values[key] = getattr(spec, key)
+    if spec.thinning_measured:
+        values["thinning_from"] = MEASURED
+        units["thinning_from"] = (
+            "on a gear that may be worn; with that of the drawing, or of a tooth that never ran: leave this line out"
+        )
     if spec.internal:
         units["profile_shift"] = "x module, by ISO: + is a thicker tooth"
     for key in ("cutter_teeth", "cutter_tip_radius", "fillet_radius"):
@@ -134,8 +140,10 @@ def _modification_unit(key: str) -> str:
     return {"start": "mm, diameter", "length": "mm, face" if key.startswith("end") else "mm, roll"}[key.rsplit("_", 1)[1]]
 
 
-def _shortest(value: float) -> str:
-    """The shortest text that reads back as the same number, or as true."""
+def _shortest(value: float | str) -> str:
+    """The shortest text that reads back as the same number, as true, or as the same word."""
+    if isinstance(value, str):
+        return f'"{value}"'
     if value is True:
         return "true"
     text = f"{value:.12g}"

@@ -164,6 +164,8 @@ class Effect(Protocol):
     """False where only a fit that asks for the effect by name may use it."""
     averaged: ClassVar[str]
     """"z" or "roll" where the deviation may wave or bend within a few cells that way: its basis is then averaged over them."""
+    by_worn: ClassVar[bool]
+    """True where its basis is another with other sides worn throughout (`Context.worn`); whether it applies and its shapes depend on that in none."""
 
     def applies(self, context: Context) -> bool:
         """Whether this scan could show it at all."""
@@ -227,6 +229,7 @@ class CatalogueEffect:
     usual: ClassVar[bool] = False
     searched: ClassVar[bool] = True
     averaged: ClassVar[str] = ""
+    by_worn: ClassVar[bool] = False
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     lower: ClassVar[float] = -0.5
     upper: ClassVar[float] = 0.5

@@ -42,6 +42,7 @@ class ProfileSlope(CatalogueEffect):
         "Measure the profile of four teeth on a gear tester, or scan a cylinder of known diameter: a scanner's scale shows on the cylinder too."
     )
     group: ClassVar[str] = "G2"
+    by_worn: ClassVar[bool] = True
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("left_um"), Parameter("right_um"))
     phrase: ClassVar[str] = "a profile slope of {left_um} on left and {right_um} on right flanks"
 

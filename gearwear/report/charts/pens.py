@@ -53,7 +53,8 @@ class Pens:
 
         for kind, look in self.areas.items():
             if outlines := self._areas.get(kind):
-                page.add_patch(PathPatch(Path.make_compound_path(*map(_thinned, outlines)), **look))
+                # As `add_patch`, which asks curve by curve how far they reach: a sheet has its own limits.
+                page.add_artist(PathPatch(Path.make_compound_path(*map(_thinned, outlines)), **look))
         for kind, look in self.lines.items():
             if curves := self._curves.get(kind):
                 page.plot(*np.concatenate(curves).T, **look)

@@ -128,6 +128,7 @@ def _design(results: Results) -> Json:
         "transverse_pressure_angle_deg": math.degrees(gear.transverse_pressure_angle),
         "base_helix_angle_deg": math.degrees(gear.base_helix_angle),
         "profile_shift": spec.profile_shift,
+        **({"thinning_mm": spec.thinning, "thinning_from": "measured"} if spec.thinning_measured else {}),
         "face_width_mm": gear.face_width,
         "reference_radius_mm": gear.reference_radius,
         "base_radius_mm": gear.base_radius,

@@ -117,17 +117,39 @@ def _wear_found(results: Results) -> str:
             f" thinner than designed {thickness_place(results.gear)}"
         )
     if _open(results):
-        return f"{text}; {_may_be(results)}"
-    return f"{text}; {too_faint}" if (too_faint := _too_faint(results)) else text
+        text += f"; {_may_be(results)}"
+    elif too_faint := _too_faint(results):
+        text += f"; {too_faint}"
+    return text + _were_they_worn_so_thin(results)
+
+
+def _were_they_worn_so_thin(results: Results) -> str:
+    """What the volume may come to where the teeth are as thin as the design has them from a gear that was measured; "" where a drawing says how thin."""
+    up_to = _up_to(results)
+    return (
+        f"; were the teeth not cut as thin as they were measured but worn evenly to that, it would be up to {up_to}"
+        if up_to
+        else ""
+    )
+
+
+def _up_to(results: Results) -> str:
+    """That volume; "" as above."""
+    limits = results.volume_range
+    return "" if limits is None or results.open_volume.measured_thinning == 0.0 else _volume(limits[1], results)
+
+
+def _volume(value: float, results: Results) -> str:
+    return f"{significant(value, 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
 
 
 def _too_faint(results: Results) -> str:
     """What the volume may come to with wear that does not stand out; "" where that is within what is known of it."""
     if results.open_volume.too_faint <= 0.0:
         return ""
-    limits = results.volume_range
+    limits = results.open_volume.of_such_teeth
     assert limits is not None
-    return f"with wear too shallow to be found it may be up to {significant(limits[1], 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
+    return f"with wear too shallow to be found it may be up to {_volume(limits[1], results)}"
 
 
 def _open(results: Results) -> bool:
@@ -160,9 +182,14 @@ def _may_be(results: Results) -> str:
 
 def _limits(results: Results) -> str:
     """Between what the volume lies where more than its standard deviation leaves it open; its own 95 % is in it at either end."""
-    limits = results.volume_range
+    limits = _range(results)
     assert limits is not None
-    return f"{significant(limits[0], 2)} to {significant(limits[1], 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
+    return f"{significant(limits[0], 2)} to {_volume(limits[1], results)}"
+
+
+def _range(results: Results) -> tuple[float, float, str] | None:
+    """The limits of the volume; beside wear that stands out those of teeth as thin as the design has them, which leave it its own place in the words."""
+    return results.open_volume.of_such_teeth if results.wear.regions else results.volume_range
 
 
 def _lost(results: Results) -> str:
@@ -180,8 +207,9 @@ def _with_own_std(results: Results) -> str:
 
 def _wide(results: Results) -> bool:
     """Whether what is open of the volume is so much more than its standard deviation that this would be read as how well it is known."""
-    limits = results.volume_range
-    return limits is not None and _open(results) and limits[1] - limits[0] > 2.0 * LOPSIDED * NORMAL_95 * results.wear.volume_std
+    limits = _range(results)
+    open_ = _open(results) or not (results.wear.regions or results.open_volume.measured_thinning == 0.0)
+    return limits is not None and open_ and limits[1] - limits[0] > 2.0 * LOPSIDED * NORMAL_95 * results.wear.volume_std
 
 
 def _no_wear(results: Results) -> str:
@@ -189,6 +217,9 @@ def _no_wear(results: Results) -> str:
     text = f"no wear was found: {otherwise} on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
     if _open(results):
         return f"no wear stands out, but {_may_be(results)}"
+    if results.open_volume.measured_thinning > 0.0:
+        question = "whether the teeth were cut as thin as they were measured or are worn evenly to that"
+        return f"no wear stands out, but {question} the scan does not decide: it may be {_limits(results)}"
     limit = results.wear.found.would_have_shown
     if limit is None:
         return f"{text}; the flanks are seen too thinly to say what would have shown"
@@ -424,11 +455,12 @@ def _where_lost(results: Results) -> str:
     """From which flanks, and what else the volume may be."""
     open_, regions = _open(results), results.wear.regions
     if not regions:
-        return "not excluded; no region stands out" if open_ else "no region stands out"
+        return "not excluded; no region stands out" if open_ or _up_to(results) else "no region stands out"
     beside = f"likeliest {_with_own_std(results)}" if _wide(results) else _too_faint(results)
     if open_ and not _wide(results):
         beside = f"{_limits(results)} are not excluded"
-    return "; ".join(filter(None, (f"from {which_flanks(regions, results.gear.teeth)}", beside)))
+    worn_thin = f"up to {up_to} if worn evenly to the measured thinning" if (up_to := _up_to(results)) else ""
+    return "; ".join(filter(None, (f"from {which_flanks(regions, results.gear.teeth)}", beside, worn_thin)))
 
 
 def _contact_figures(results: Results) -> list[KeyFigure]:

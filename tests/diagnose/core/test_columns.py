@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gearwear.diagnose.columns import CellColumns, cuts_of
-from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.columns import LEAST_ROWS, CellColumns, cuts_of
+from gearwear.diagnose.gram import Gram, _weighted
 from tests.diagnose.core.toy import grid
 
 CUTS = np.array([0, 30, 31, 70])
@@ -46,6 +46,25 @@ def test_columns_come_back_as_they_were():
     assert sum(stretch.values.size for stretch in kept.stretches) < 0.7 * values.size
 
 
+def test_columns_that_are_kept_already_stand_where_they_are_given():
+    values, *_ = case(2)
+    kept = CellColumns.of(values[:, 2:5], CUTS)
+    every = CellColumns.gathered([values[:, :2], kept, values[:, 5:6], values[:, 6:]], CUTS)
+    out = np.zeros_like(values)
+    every.put(np.arange(9), out)
+    np.testing.assert_array_equal(out, values)
+    assert every.cuts.tolist() == CUTS.tolist()
+
+
+def test_cells_without_weight_take_no_part_in_products():
+    """What is left out of a fit costs nothing: as many rows are multiplied as have a weight."""
+    values, _, weight, _ = case(3)
+    kept, rows = (CellColumns.of(values[:, :7], CUTS), CellColumns.of(values[:, 7:], CUTS)), np.flatnonzero(weight)
+    parts = list(_weighted(kept, np.sqrt(weight), rows))
+    np.testing.assert_array_equal(np.concatenate([at for at, _, _ in parts]), rows)
+    assert [len(part) for _, _, part in parts] == [len(at) for at, _, _ in parts]
+
+
 @pytest.mark.parametrize("size", [0.4, 1.6])
 def test_stretches_of_a_grid_are_whole_sides_or_teeth_of_one_surface(size):
     one = grid(size)
@@ -54,3 +73,6 @@ def test_stretches_of_a_grid_are_whole_sides_or_teeth_of_one_surface(size):
     assert (np.diff(cuts) > 0).all() and set(starts) <= set(cuts.tolist()) and cuts[-1] < one.count
     first, many = next(iter(one.blocks.values()))
     assert {(cut - first) % (one.rows * one.flank) for cut in cuts.tolist() if cut < first + many} == {0}
+    # Where a third of the cells are seen, stretches are three times as long.
+    longer = np.diff(cuts_of(one, 1.0 / 3.0)[np.isin(cuts_of(one, 1.0 / 3.0), cuts)])
+    assert set(cuts_of(one, 1.0 / 3.0).tolist()) >= set(starts) and longer[0] >= min(3 * LEAST_ROWS, many)

@@ -7,11 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gearwear.design.side import Side
 from gearwear.design.surface import TIP
 from gearwear.diagnose import few_cells
 from gearwear.diagnose.covariance import CellCovariance
-from gearwear.diagnose.dictionary import build_dictionary
+from gearwear.diagnose.dictionary import build_dictionary, with_worn
 from gearwear.diagnose.effects import catalogue
+from gearwear.diagnose.effects.pitch import EFFECT as PITCH
+from gearwear.diagnose.effects.pitch import Pitch
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.loop import make_context
 from gearwear.diagnose.rules import RULES, in_force
@@ -28,6 +31,37 @@ def fit():
     target = dictionary.columns @ np.random.default_rng(1).normal(size=dictionary.count)
     white = CellCovariance(cells.grid, 1e-4 / np.maximum(cells.count, 1.0), 1e-5, 0.5, 0.5)
     return Fit(cells, target, dictionary, cells.seen, white)
+
+
+def test_a_freedom_for_every_tooth_is_built_a_stretch_at_a_time(monkeypatch):
+    """Of its columns, as many as teeth, all cells would be held with their zeros; what comes out is what its basis is on all of them."""
+    cells = binned(())
+    context, shape, asked = make_context(cells, np.eye(3), False), (1.0,), list[int]()
+    in_full = np.zeros((len(cells.seen), context.gear.teeth - 1))
+    in_full[cells.seen] = PITCH.basis(cells.points.take(cells.seen), context, shape)
+
+    def counted(self, points, *rest, basis=Pitch.basis):
+        asked.append(len(points))
+        return basis(self, points, *rest)
+
+    monkeypatch.setattr(Pitch, "basis", counted)
+    dictionary = build_dictionary(cells, (PITCH,), context)
+    (own,) = [c.columns for c in dictionary.candidates if c.shape == shape]
+    np.testing.assert_array_equal(dictionary.take(own), in_full)
+    assert sum(asked) == 2 * int(cells.seen.sum()) and max(asked) <= np.diff(dictionary.first.cuts).max()
+
+
+@pytest.mark.parametrize("worn", [frozenset({Side.LEFT}), frozenset(Side)])
+def test_columns_that_other_sides_worn_leave_as_they_are_are_kept(worn):
+    """The dictionary for sides worn throughout is the same as one built for them anew, and shares what was built."""
+    cells = binned(())
+    context, effects = make_context(cells, np.eye(3), False), tuple(effect for effect in catalogue() if effect.searched)
+    plain, without = build_dictionary(cells, effects, context), replace(context, worn=worn)
+    kept, anew = with_worn(plain, cells, without), build_dictionary(cells, effects, without)
+    assert kept.first is plain.first
+    assert [(c.name, c.shape) for c in kept.candidates] == [(c.name, c.shape) for c in anew.candidates]
+    for one, other in zip(kept.candidates, anew.candidates, strict=True):
+        np.testing.assert_array_equal(kept.take(one.columns), anew.take(other.columns))
 
 
 def test_a_fit_on_few_cells_is_left_as_it_is(fit):
@@ -56,3 +90,4 @@ def test_teeth_are_left_out_where_rows_are_few_already(fit, monkeypatch):
     assert few.cells.grid is fit.cells.grid
     on_teeth = few.cells.points.surface[there] <= TIP
     assert set(few.cells.points.tooth[there][on_teeth]) == {0, 3, 6, 9}
+    assert len(few.dictionary.first.cuts) < len(fit.dictionary.first.cuts)  # stretches of as many cells that are seen

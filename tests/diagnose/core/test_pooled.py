@@ -77,9 +77,9 @@ def test_a_scan_far_off_is_located_alike_by_a_rough_look():
     assert abs(size.value - 0.3) < 3.0 * size.std
 
 
-@pytest.mark.parametrize(("depth", "asked"), [(60.0, 1), (4.0, 2)])
-def test_which_sides_are_worn_is_asked_again_where_there_is_doubt(depth, asked, monkeypatch):
-    """Sliding wear of 60 µm is beyond doubt at the first look, of 4 µm at none."""
+@pytest.mark.parametrize(("depth", "asked", "left_open"), [(60.0, 1, 1), (11.0, 2, 3), (4.0, 2, 4)])
+def test_which_sides_are_worn_is_asked_again_where_there_is_doubt(depth, asked, left_open, monkeypatch):
+    """Sliding wear of 60 µm is beyond doubt at the first look, of 4 µm at none; in between some sides are out of question, and not asked about again."""
     shares = (1.0, 0.85, 1.15, 0.9, 1.1, 1.05, 0.95, 1.0, 0.87, 1.12, 0.93, 1.08)
     recipe = Recipe(noise_um=8.0, wear=(SlidingWear(depth, 1, shares),)).of_size(40_000)
     points = make_scan(recipe, 5).points
@@ -97,6 +97,9 @@ def test_which_sides_are_worn_is_asked_again_where_there_is_doubt(depth, asked, 
     found = find_effects(measured)
     assert len(costs) == asked
     assert costs[0].beyond_doubt == (asked == 1)
+    ruled_out = costs[0].ruled_out
+    assert len(costs[0].by_sides) - len(ruled_out) == left_open
+    assert asked == 1 or not (ruled_out & costs[1].by_sides.keys())
     assert depth < 10.0 or found.loop.worn_sides == frozenset({Side.LEFT})
 
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from gearwear.design.surface import locate
+from gearwear.diagnose import worn_flanks
 from gearwear.diagnose.loop import close_loop, make_context
-from gearwear.diagnose.worn_flanks import Explained, Levels, low_flanks, waves
+from gearwear.diagnose.worn_flanks import Levels, low_flanks, waves
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
 from tests.synthetic import AbrasiveWear, Recipe, make_scan
@@ -146,14 +147,31 @@ def test_worn_flanks_at_even_steps_are_neither_waves_nor_effects(step):
     assert [tuple(place) for place in np.argwhere(loop.worn_flanks)] == [(tooth, 0) for tooth in worn]
 
 
+def test_no_model_is_fitted_twice(monkeypatch):
+    """Searches from five starts come by the same models, and by most of them more than once."""
+    asked = list[tuple[bytes, tuple[int, ...]]]()
+
+    def counted(of, columns, low=(), fitted=worn_flanks._fitted):
+        asked.append((columns.tobytes(), low))
+        return fitted(of, columns, low)
+
+    monkeypatch.setattr(worn_flanks, "_fitted", counted)
+    left, right = scatter(3, 24)
+    left[[4, 9, 10]] -= DEPTH
+    assert low_flanks(levels(left, right)) == places(np.array([4, 9, 10]), 0)
+    # Without any flank apart they are asked for twice: with waves that have no cause, and without.
+    beside = [one for one in asked if one[1]]
+    assert len(beside) == len(set(beside)) > 20
+
+
 def test_a_flank_with_a_depth_of_its_own_tells_nothing_else():
     """However deep it lies, its depth takes it up: cost and what the other flanks show stay. Both flanks of tooth 3 are low."""
     left, right = scatter(5, 20, index=0.004)
     low = (4, 6, 7, 11, 30)
-    plain = Explained(levels(left, right), low=low)
+    plain = levels(left, right).explained(low=low)
     moved = levels(left, right)
     moved.value[list(low)] -= np.arange(1.0, 6.0) * 50.0
-    deep = Explained(moved, low=low)
+    deep = moved.explained(low=low)
     others = np.setdiff1d(np.arange(20), np.array(low) // 2)
     assert deep._with_own.misfit == pytest.approx(plain._with_own.misfit, rel=1e-6)
     np.testing.assert_allclose(deep.below[others], plain.below[others], atol=1e-4)

@@ -11,6 +11,7 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import END_HIGH, END_LOW, FLANK, locate
+from gearwear.diagnose.columns import cuts_of
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects.base import Kind
@@ -195,6 +196,7 @@ def test_an_answer_is_beyond_doubt_where_all_others_cost_a_twentieth_more_and_mo
         {NO_SIDE: 100.0, LEFT: 99.0, BOTH: 95.0}, alike=96.0
     ).beyond_doubt  # no side is taken, and two are cheaper
     assert SideCosts({NO_SIDE: 100.0}).beyond_doubt
+    assert SideCosts({NO_SIDE: 1051.0, LEFT: 1000.0, RIGHT: 1200.0, BOTH: 1049.0}).ruled_out == {NO_SIDE, RIGHT}
 
 
 @pytest.mark.parametrize(("alike", "worn"), [(100.0, NO_SIDE), (103.9, NO_SIDE), (104.1, BOTH)])
@@ -253,7 +255,7 @@ def test_the_share_of_a_flank_is_the_loss_on_that_flank_and_nothing_elsewhere():
     cells = binned(())
     points = cells.points
     loss = np.where(cells.seen & (points.surface == FLANK) & (points.tooth != 4), -np.hypot(*points.position[:, :2].T), 0.0)
-    shares = _by_tooth(cells, loss)
+    shares = _by_tooth(cells, loss, cuts_of(cells.grid))
     columns = np.column_stack([shares.times(share) for share in np.eye(shares.count)])
     flanks = [(tooth, side) for tooth in range(PINION.teeth) if tooth != 4 for side in (-1, 1)]
     expected = [np.where((points.tooth == tooth) & (points.side == side), loss, 0.0) for tooth, side in flanks]
