@@ -175,7 +175,7 @@ MUTATIONS = [
         ("diagnose/untold.py", "columns[on] @ told + known.off[at[1]]", "columns[on] @ told", "diagnose/test_untold.py"),
         ("diagnose/untold.py", "known.scatter / (lever @ free) * free", "known.scatter * free", "diagnose/test_untold.py"),
         ("diagnose/untold.py", "level_std[at], stds = np.linalg.norm(lever * scatter), scatter", "level_std[at], stds = known.scatter, 0.0 * scatter", "diagnose/test_untold.py"),
-        ("diagnose/worn_sides.py", "max(rules().close, rules().beyond_doubt * self.by_sides[taken])", "rules().close", "diagnose/core/test_worn_sides.py"),
+        ("diagnose/worn_sides.py", "max(rules().close, rules().beyond_doubt * least)", "rules().close", "diagnose/core/test_worn_sides.py"),
         ("diagnose/few_cells.py", "is fit.cells.grid and kept.all()", "is fit.cells.grid", "diagnose/core/test_few_cells.py"),
         ("wear/made_apart.py", "FEWEST_FLANKS = 6", "FEWEST_FLANKS = 60", "wear/test_made_apart.py"),
         ("wear/made_apart.py", "MOST_SHARE = 0.9", "MOST_SHARE = 0.0", "wear/test_made_apart.py"),
