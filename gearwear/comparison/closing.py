@@ -88,7 +88,10 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     look = scan.looked_at()
     if look is not None:
         first = look[0]
-        scan = replace(scan, worn=first.worn_sides if first.sides_sure else worn, ruled_out=first.sides_ruled_out)
+        sure = first.worn_sides if first.sides_sure else worn
+        pitch = first.context.pitch if first.sides_sure else measured.context.pitch
+        known = replace(measured, context=measured.context.with_pitch(pitch))
+        scan = replace(scan, measured=known, worn=sure, ruled_out=first.sides_ruled_out)
     far = look is not None and is_far(*look)
     likeliest = look[0] if look is not None and far else scan.explained(look)
     again = None
@@ -197,7 +200,10 @@ class _Scan:
         motion, located = FinalMotion.of(measured.placed, loop, measured.gear, again)
         cells = with_pits(located, self.grid) if measured.streamed is None else moved(self.cells, -loop.motion)
         named = beside_views(loop, measured.placed, self.cells, measured.noise)
-        return replace(measured, first=self.cells, loop=named, final=FinalPlace(located, motion.pose, cells)), motion
+        context = measured.context.with_pitch(named.context.pitch)
+        return replace(
+            measured, context=context, first=self.cells, loop=named, final=FinalPlace(located, motion.pose, cells)
+        ), motion
 
 
 def _with_scatter(located: SurfacePoints, rest: SurfacePoints, grid: CellGrid) -> Cells:

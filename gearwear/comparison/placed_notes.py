@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.diagnose.effects.base import MEASURED, SCALE_LIMIT
+from gearwear.diagnose.effects.base import MEASURED, SCALE_LIMIT, Context
 from gearwear.diagnose.effects.view_registration import VIEW_REGISTRATION
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.diagnose.loop import LEVEL_GROUP
@@ -23,17 +23,26 @@ from gearwear.placing.views import PlacedScan
 SHARED = 0.7
 """Variance of neighbours' differences, in that within a patch, below which points share their errors. Of eleven smoothed scans of the families the
 greatest is 0.62, and of 20 that were not the least 0.78, of one with a short texture."""
-ALONE = (
-    "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out, and flanks are taken not to slide at"
-    " the reference circle"
-)
-"""Where the pair's profile shifts do not sum to zero they slide there, and wear of a whole side has another shape than the one looked for."""
 THINNED = (
     "the thinning of the design, {thinning:.3f} mm, was measured on a gear that may be worn: depths, and how thin the teeth have become, are told from"
     " teeth that thin; what an even loss would have taken off them is in the limits of the volume alone"
 )
 """An even loss of all flanks looks like teeth that were cut thin."""
 SMOOTHED = "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are"
+
+
+def alone(context: Context) -> str:
+    """That the design has no mate, and where its flanks are taken not to slide.
+
+    Where the pair's profile shifts do not sum to zero they slide at the reference circle, and wear of a whole side has another shape than about it.
+    """
+    still = "the reference circle"
+    if context.pitch is not None:
+        still = f"⌀ {2.0 * math.hypot(context.pitch, context.gear.base_radius):.4g} mm, as the wear shows it"
+    return (
+        "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out, and flanks are taken not to slide at "
+        + still
+    )
 
 
 def doubts_of(gear: Gear, drawn: Gear, placed: PlacedScan, noise: float) -> tuple[str, ...]:

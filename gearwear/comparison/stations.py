@@ -18,7 +18,7 @@ from gearwear.comparison.consequences import Change, meshing_changes, thickness_
 from gearwear.comparison.contributions import PutBack, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.comparison.open_volume import even_loss, level_open, thinning_open
-from gearwear.comparison.placed_notes import ALONE, THINNED
+from gearwear.comparison.placed_notes import THINNED, alone
 from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
@@ -211,7 +211,7 @@ def compare(
             *_off_reference(gear),
             *dict.fromkeys((*measured.remarks, *design.warnings)),  # an assumed root is said by both
             *((HALVES,) if gear.spec.gap > 0.0 else ()),
-            *(() if pair is not None else (ALONE,)),
+            *(() if pair is not None else (alone(measured.context),)),
         ),
         before_files=tuple(str(path) for path in before),
         same_teeth=same,

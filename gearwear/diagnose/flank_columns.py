@@ -10,6 +10,7 @@ from numpy.polynomial.legendre import legvander
 from gearwear.arrays import Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
+from gearwear.diagnose.columns import CellColumns, Stretch, between
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells
@@ -90,6 +91,21 @@ def on_worn(cells: Cells, shapes: Floats, worn: frozenset[Side]) -> tuple[Floats
         columns.append(np.where(own[:, None], -shapes, 0.0))
         sides += [int(side)] * shapes.shape[1]
     return np.hstack(columns), np.array(sides, dtype=np.int64)
+
+
+def loss_by_tooth(cells: Cells, loss: Floats, cuts: Ints) -> CellColumns:
+    """The common loss with a share of its own on every flank, (m, k), by stretches that begin at `cuts`."""
+    points = cells.points
+    flank = points.tooth.astype(np.int64) * 2 + (points.side > 0)
+    worn = np.flatnonzero(np.bincount(flank[loss != 0.0], minlength=2 * cells.grid.gear.teeth))
+    place = np.full(2 * cells.grid.gear.teeth, -1)
+    place[worn] = np.arange(len(worn))
+    stretches = []
+    for rows in between(cuts, len(loss)):
+        which, lost = np.where(loss[rows] != 0.0, place[flank[rows]], -1), loss[rows, None]
+        here = np.unique(which[which >= 0])
+        stretches.append(Stretch(rows, here, np.where(which[:, None] == here, lost, 0.0)))
+    return CellColumns(len(loss), len(worn), tuple(stretches))
 
 
 def _hats(roll: Floats, nodes: Floats) -> Floats:

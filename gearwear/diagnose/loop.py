@@ -31,10 +31,11 @@ from gearwear.diagnose.of_the_part import left_in_the_part, of_the_form
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
+from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
 from gearwear.diagnose.told_by_wear import told_by_wear
 from gearwear.diagnose.untold import with_untold
 from gearwear.diagnose.worn_flanks import worn_flanks
-from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
+from gearwear.diagnose.worn_sides import side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 
@@ -125,16 +126,16 @@ def close_loop(
     every_candidate = build_dictionary(cells, made, context)
 
     def searched_without(sides: frozenset[Side]) -> Searched:
-        without = replace(context, worn=sides)
+        without = replace(context, worn=sides, pitch=costs.pitch.get(sides, context.pitch))
         dictionary = with_worn(every_candidate, cells, without) if sides else every_candidate
         return _first_search(cells, noise, without, dictionary, always, out, apart, begun)
 
+    costs, ran = SideCosts({alone: 0.0}), context.ran
     plain = searched_without(alone)
     low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
     if _still_in(plain, low):
         apart = cells.grid.on_flanks(low)
         plain = searched_without(alone)
-    costs, ran = SideCosts({alone: 0.0}), context.ran
     if worn is None and len(ran) < len(Side):  # whether a side is worn throughout the others tell
         told = cells.grid.on_flanks(low)
         for face in context.faces:

@@ -139,6 +139,20 @@ class Rules:
     parameter_penalty: float = rule(4.0, "cost", "derived", "2 standard deviations: each of its parameters")
     shape_price: float = rule(1.5, "parameters", "tuned, scans not recorded", "what a shape value counts", off=1.0)
 
+    pitch_spread: float = rule(
+        0.7,
+        "modules",
+        "derived: shifts of a pair that sum to 0 ± 0.5, and as many teeth on either gear",
+        "standard deviation of how far the pitch point lies off the reference circle, of roll, where the design has no mate",
+        off=0.0,
+    )
+    pitch_within: float = rule(
+        0.15,
+        "of the flank",
+        "derived: a loss has two sides of it",
+        "how far within the ends of the flank the pitch point is looked for",
+    )
+
     tried: int = rule(3, "candidates", "tuned, scans not recorded", "those of greatest gain are tried in each place", off=0)
 
     # The judgement.

@@ -11,7 +11,6 @@ hypothesis leave out what speaks against it.
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -24,84 +23,35 @@ from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
 from gearwear.design.tolerance import profile_form_tolerance
-from gearwear.diagnose.columns import CellColumns, Stretch, between, cuts_among
+from gearwear.diagnose.columns import CellColumns, cuts_among
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.few_cells import on_few_cells
 from gearwear.diagnose.fit import Fit, Model, design_unit
-from gearwear.diagnose.flank_columns import any_profile, any_wear_columns, made_profiles, on_each_side, on_worn, wear_columns
+from gearwear.diagnose.flank_columns import (
+    any_profile,
+    any_wear_columns,
+    loss_by_tooth,
+    made_profiles,
+    on_each_side,
+    on_worn,
+    wear_columns,
+)
 from gearwear.diagnose.flanks_differ import differ_more
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import above_last_fillet_edge, sound_cells
+from gearwear.diagnose.pitch_point import as_slid, likeliest
 from gearwear.diagnose.robust_fit import SETTLED, Robust, Shares, robust_fit
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Around, Problem, exchange, free_penalty
+from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 from gearwear.processors import each
 
-NO_SIDE: frozenset[Side] = frozenset()
 REMEMBERED = 8
 """Models whose columns are kept; numerical."""
-
-
-@dataclass(frozen=True, slots=True)
-class SideCosts:
-    """What it costs that no side, the left, the right or both are worn throughout.
-
-    Parameters
-    ----------
-    by_sides : dict of frozenset of Side to float
-        A hypothesis that is not tenable is left out.
-    alike : float
-        Of no wear, where whatever the flanks were made with is the same on both sides.
-    uncommon : float
-        By how much a form such as both sides may have lost is less common among flanks of the gear's class than none.
-    """
-
-    by_sides: Mapping[frozenset[Side], float]
-    alike: float = math.inf
-    uncommon: float = 0.0
-
-    @property
-    def chosen(self) -> frozenset[Side]:
-        """The cheapest hypothesis. A form that both sides share was made more often than both were worn to it: they are worn only where that
-        beats it by more than chance."""
-        cheapest = min(self.by_sides, key=lambda worn: self.by_sides[worn])
-        as_likely = self.alike < self.by_sides[cheapest] + rules().close
-        return NO_SIDE if len(cheapest) == len(Side) and as_likely else cheapest
-
-    def beside(self, ran: frozenset[Side]) -> SideCosts:
-        """Of the other sides alone, where flanks of some show where their mate ran."""
-        if not ran:
-            return self
-        return replace(self, by_sides={worn: cost for worn, cost in self.by_sides.items() if not worn & ran})
-
-    @property
-    def ruled_out(self) -> frozenset[frozenset[Side]]:
-        """Hypotheses that cost so much more than the chosen one that more cells would say the same."""
-        least = self.by_sides[self.chosen]
-        least += max(rules().close, rules().beyond_doubt * least)
-        return frozenset(worn for worn, cost in self.by_sides.items() if cost > least)
-
-    @property
-    def beyond_doubt(self) -> bool:
-        """Whether every other hypothesis than the chosen one is ruled out."""
-        return self.ruled_out == self.by_sides.keys() - {self.chosen}
-
-    @property
-    def not_excluded(self) -> tuple[frozenset[Side], ...]:
-        """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one.
-
-        Both sides made with what both may have lost alike is no better told by how well it fits than their class makes such a form uncommon.
-        """
-        taken, both = self.chosen, frozenset(Side)
-        limit = self.by_sides[taken] + rules().close
-        more = self.uncommon if taken == NO_SIDE else 0.0
-        return tuple(
-            worn for worn, cost in self.by_sides.items() if worn != taken and cost - (more if worn == both else 0.0) < limit
-        )
 
 
 def side_costs(
@@ -134,23 +84,18 @@ def side_costs(
     profiles = (shared[:, :0], price[:0]), (shared, price), by_side
     plain, alike, apart = each([partial(scan.made, model, *profile) for profile in profiles])
     made = min(plain.cost, alike.cost)
-    answers = [sides for sides in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)) if sides not in ruled_out]
     unworn = min(made, apart.cost)
-    tried = [partial(scan.least_worn_cost, model, sides, apart.cost < made, unworn) for sides in answers]
-    if apart.cost < made:
-        # One side worn, and the other cut to a profile of its own.
-        for side in Side:
-            own = apart.needed[apart.needed // shared.shape[1] == side.opposite.index]
-            if len(own) and frozenset({side}) not in ruled_out:
-                beside, paid = scan.beside(by_side[0][:, own]), _price(by_side[1][own])
-                answers.append(frozenset({side}))
-                tried.append(partial(beside.slid_cost, model, side, unworn, paid))
-    tenable = dict[frozenset[Side], _Worn]()
-    for sides, least in zip(answers, each(tried), strict=True):
-        if least is not None and (sides not in tenable or least.cost < tenable[sides].cost):
-            tenable[sides] = least
+    own = {side: apart.needed[apart.needed // shared.shape[1] == side.opposite.index] for side in Side if apart.cost < made}
+    beside = {side: (by_side[0][:, columns], _price(by_side[1][columns])) for side, columns in own.items() if len(columns)}
+    tenable = scan.tenable(model, apart.cost < made, unworn, beside, ruled_out)
+    other, pitch = scan.pitch_point(model), dict[frozenset[Side], float]()
+    if other is not None:
+        roll, paid = other
+        for sides, least in scan.at_pitch(roll).tenable(model, apart.cost < made, unworn, beside, ruled_out).items():
+            if sides not in tenable or least.cost + paid < tenable[sides].cost:
+                tenable[sides], pitch[sides] = replace(least, cost=least.cost + paid), roll
     uncommon = tenable[frozenset(Side)].uncommon if frozenset(Side) in tenable else 0.0
-    return SideCosts({NO_SIDE: unworn} | {sides: least.cost for sides, least in tenable.items()}, made, uncommon)
+    return SideCosts({NO_SIDE: unworn} | {sides: least.cost for sides, least in tenable.items()}, made, uncommon, pitch)
 
 
 def _believed(cells: Cells, context: Context, noise: float) -> Bools:
@@ -271,6 +216,45 @@ class _Scan:
         result = np.zeros(len(self.sound))
         result[self.rows] = values
         return result
+
+    def tenable(
+        self,
+        model: Model,
+        any_shape: bool,
+        unworn: float,
+        beside: Mapping[Side, tuple[Floats, float]],
+        ruled_out: frozenset[frozenset[Side]],
+    ) -> dict[frozenset[Side], _Worn]:
+        """The least cost of each hypothesis that is tenable: sides worn, and one side worn beside a form of the other (columns (m, k), and its price)."""
+        answers = [
+            sides for sides in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)) if sides not in ruled_out
+        ]
+        tried = [partial(self.least_worn_cost, model, sides, any_shape, unworn) for sides in answers]
+        for side, (made, paid) in beside.items():
+            # One side worn, and the other cut to a profile of its own.
+            if frozenset({side}) not in ruled_out:
+                answers.append(frozenset({side}))
+                tried.append(partial(self.beside(made).slid_cost, model, side, unworn, paid))
+        tenable = dict[frozenset[Side], _Worn]()
+        for sides, least in zip(answers, each(tried), strict=True):
+            if least is not None and (sides not in tenable or least.cost < tenable[sides].cost):
+                tenable[sides] = least
+        return tenable
+
+    def at_pitch(self, roll: float) -> _Scan:
+        """The scan with the pitch point at a roll, mm."""
+        return replace(self, problem=replace(self.problem, context=self.problem.context.with_pitch(roll)))
+
+    def pitch_point(self, model: Model) -> tuple[float, float] | None:
+        """`likeliest` of the pitch points that a gear without a mate may have, beside a model."""
+        context, points = self.problem.context, self.fit.cells.points
+        if context.mate is not None or context.pitch is not None:
+            return None
+        made, free = self.columns(model), on_each_side(self.fit.cells, any_profile(self.fit.cells))[self.rows]
+        weight = self.robust(np.hstack([made, free])).weight
+        flank = points.surface == FLANK
+        roll, side = np.nan_to_num(points.roll)[self.rows], np.where(flank, points.side, 0)[self.rows]
+        return likeliest(context, roll, side, self.fit.target[self.rows], weight, made, self.problem.unit)
 
     def beside(self, made: Floats) -> _Scan:
         """The scan with some columns (m, k) that flanks were made with in every fit, as the pose is."""
@@ -431,7 +415,7 @@ class _Scan:
         loss = law @ fitted.amplitudes[-law.shape[1] :]
         by_tooth = self.shares(loss[self.rows])
         alone = self.robust(self.columns(searched), by_tooth, first=fitted.weight)
-        searched = self._searched(searched, _by_tooth(self.fit.cells, loss, self.fit.dictionary.first.cuts), alone.weight)
+        searched = self._searched(searched, loss_by_tooth(self.fit.cells, loss, self.fit.dictionary.first.cuts), alone.weight)
         alone = self.robust(self.columns(searched), by_tooth, first=alone.weight)
         last = slice(len(alone.amplitudes) - by_tooth.count, None)
         share = alone.amplitudes[last]
@@ -505,21 +489,6 @@ def _price(columns: Floats) -> float:
     return rules().effect_penalty + float(columns.sum()) if len(columns) else 0.0
 
 
-def as_slid(lost: Floats, way: Floats, made: float) -> bool:
-    """Whether a loss along the profile, (n,) mm, may follow load times sliding; `way` (n,) mm is how far up the line of action the pitch point lies behind.
-
-    Away from the pitch point flanks slide faster, and two pairs of teeth share the load: further out each carries a third of it at least, at specific sliding of
-    at least half. So where a place has lost anything, all beyond have lost a part of that times their way; but for what flanks are made with, `made` mm.
-    """
-    for half in (way < 0.0, way >= 0.0):
-        half = half & (np.abs(way) > rules().least_way * np.abs(way[half]).max(initial=0.0))
-        outward = np.flatnonzero(half)[np.argsort(np.abs(way[half]))]
-        load = (lost[outward] - lost.min()) / np.abs(way[outward])
-        if ((rules().least_load * np.maximum.accumulate(load) - load) * np.abs(way[outward]) > made).any():
-            return False
-    return True
-
-
 def _columns_of(model: Model) -> tuple[int, ...]:
     """Tells models apart, by the first column of each of their effects."""
     return tuple(int(candidate.columns[0]) for candidate in model)
@@ -528,18 +497,3 @@ def _columns_of(model: Model) -> tuple[int, ...]:
 def _lost_on(sides: Ints) -> frozenset[Side]:
     """The sides that columns of these belong to; 0 is both."""
     return frozenset(side for side in Side if np.isin(sides, (0, int(side))).any())
-
-
-def _by_tooth(cells: Cells, loss: Floats, cuts: Ints) -> CellColumns:
-    """The common loss with a share of its own on every flank, (m, k), by stretches that begin at `cuts`."""
-    points = cells.points
-    flank = points.tooth.astype(np.int64) * 2 + (points.side > 0)
-    worn = np.flatnonzero(np.bincount(flank[loss != 0.0], minlength=2 * cells.grid.gear.teeth))
-    place = np.full(2 * cells.grid.gear.teeth, -1)
-    place[worn] = np.arange(len(worn))
-    stretches = []
-    for rows in between(cuts, len(loss)):
-        which, lost = np.where(loss[rows] != 0.0, place[flank[rows]], -1), loss[rows, None]
-        here = np.unique(which[which >= 0])
-        stretches.append(Stretch(rows, here, np.where(which[:, None] == here, lost, 0.0)))
-    return CellColumns(len(loss), len(worn), tuple(stretches))

@@ -79,16 +79,19 @@ class SlidingWear:
     law : str
         "linear": |L − L_p| / (L_p − L_form). "archard": |K_1|, the specific sliding, which is
         ∝ |L − L_p| / L whatever the mate (reference B7, D3).
+    off : float
+        How far up the line of action the pitch point lies from the reference circle, mm of roll.
     """
 
     depth_um: float
     side: int = 1
     factors: tuple[float, ...] = ()
     law: Literal["linear", "archard"] = "linear"
+    off: float = 0.0
 
     def depth(self, outline: Outline, tooth: Ints, side: Ints, roll: Floats, z: Floats) -> Floats:
         factor = np.asarray(self.factors or (1.0,) * outline.teeth)[tooth] * (side == self.side)
-        pitch, form = outline.reference_roll, outline.form_roll
+        pitch, form = outline.reference_roll + self.off, outline.form_roll
         at = np.clip(roll, form, outline.tip_roll)
         slide = np.abs(at - pitch) / (pitch - form)
         if self.law == "archard":
@@ -96,7 +99,7 @@ class SlidingWear:
         return 1e-3 * self.depth_um * factor * slide
 
     def breaks(self, outline: Outline) -> tuple[list[float], list[float]]:
-        return [outline.reference_roll], []
+        return [outline.reference_roll + self.off], []
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ is fixed by the contract and stands in the effect's docstring and in docs/effect
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import ClassVar, Protocol, runtime_checkable
 
@@ -85,6 +85,8 @@ class Context:
         Teeth that are missing or were not seen: what each tooth has of its own is not known of these.
     views_apart : bool
         Whether views that do not quite lie on each other may have been put together in the scan.
+    pitch : float or None
+        Without a mate: length of roll of the pitch point, mm, as what a side has lost shows it; None: at the reference circle.
     """
 
     gear: Gear
@@ -101,6 +103,7 @@ class Context:
     faces: tuple[ActiveFace, ...] = ()
     absent: frozenset[int] = frozenset()
     views_apart: bool = False
+    pitch: float | None = None
 
     @property
     def worn_sides(self) -> frozenset[Side]:
@@ -119,21 +122,25 @@ class Context:
 
     @property
     def pitch_roll(self) -> float:
-        """Length of roll of the pitch point, mm: at the reference circle where there is no mate."""
+        """Length of roll of the pitch point, mm: at the reference circle where there is no mate and no loss shows another."""
         if self.mate is None:
-            return self.gear.reference_roll
+            return self.gear.reference_roll if self.pitch is None else self.pitch
         ratio, line = self.mate
         return line / (1.0 + ratio)
+
+    def with_pitch(self, roll: float | None) -> Context:
+        """With the pitch point at a roll, mm, of a gear without a mate."""
+        return replace(self, pitch=roll)
 
     def sliding(self, roll: Floats) -> Floats:
         """Specific sliding K1 = 1 − L2 / (u L1) at rolls L (mm).
 
         As L1 + L2 is constant and both are u-fold at the pitch point, K1 = (1 + 1 / u) (1 − L_pitch / L1): without a mate it is known but
-        for a factor, taken as 1, the pitch point being at the reference circle.
+        for a factor, taken as 1, the pitch point being at the reference circle, or where the loss of a side shows it.
         """
         roll = np.maximum(roll, LEAST_ROLL * self.gear.transverse_module)
         if self.mate is None:
-            return np.asarray(1.0 - self.gear.reference_roll / roll)
+            return np.asarray(1.0 - self.pitch_roll / roll)
         ratio, line = self.mate
         return np.asarray(1.0 - (line - roll) / (ratio * roll))
 

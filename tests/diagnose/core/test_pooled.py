@@ -12,7 +12,8 @@ from gearwear.design.side import Side
 from gearwear.diagnose import pooled
 from gearwear.diagnose.masks import sound_cells
 from gearwear.diagnose.pooled import ENOUGH_CELLS, FEWEST_ROWS, MOST_CELLS, ROUGH_ROWS, loop_grid, rough_grid
-from gearwear.diagnose.worn_sides import SideCosts, side_costs
+from gearwear.diagnose.side_costs import SideCosts
+from gearwear.diagnose.worn_sides import side_costs
 from gearwear.placing.cells import CellGrid
 from gearwear.scan.types import Scan
 from tests.synthetic import Effect, GearNumbers, Patch, Recipe, SlidingWear, make_scan

@@ -17,11 +17,14 @@ from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.face_width import EFFECT as FACE_WIDTH
 from gearwear.diagnose.fit import Fit
+from gearwear.diagnose.flank_columns import loss_by_tooth
 from gearwear.diagnose.found import _made_on, form_of_all
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.masks import not_stray
 from gearwear.diagnose.pattern import Pattern
-from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, _by_tooth, _Loss, _Scan, as_slid
+from gearwear.diagnose.pitch_point import as_slid
+from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
+from gearwear.diagnose.worn_sides import _Loss, _Scan
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
 from tests.synthetic import AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SlidingWear, make_scan
@@ -255,7 +258,7 @@ def test_the_share_of_a_flank_is_the_loss_on_that_flank_and_nothing_elsewhere():
     cells = binned(())
     points = cells.points
     loss = np.where(cells.seen & (points.surface == FLANK) & (points.tooth != 4), -np.hypot(*points.position[:, :2].T), 0.0)
-    shares = _by_tooth(cells, loss, cuts_of(cells.grid))
+    shares = loss_by_tooth(cells, loss, cuts_of(cells.grid))
     columns = np.column_stack([shares.times(share) for share in np.eye(shares.count)])
     flanks = [(tooth, side) for tooth in range(PINION.teeth) if tooth != 4 for side in (-1, 1)]
     expected = [np.where((points.tooth == tooth) & (points.side == side), loss, 0.0) for tooth, side in flanks]

@@ -1,0 +1,73 @@
+"""What it costs that sides are worn throughout: which hypothesis is chosen, and which others the scan does not exclude."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from gearwear.design.side import Side
+from gearwear.diagnose.rules import rules
+
+NO_SIDE: frozenset[Side] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class SideCosts:
+    """What it costs that no side, the left, the right or both are worn throughout.
+
+    Parameters
+    ----------
+    by_sides : dict of frozenset of Side to float
+        A hypothesis that is not tenable is left out.
+    alike : float
+        Of no wear, where whatever the flanks were made with is the same on both sides.
+    uncommon : float
+        By how much a form such as both sides may have lost is less common among flanks of the gear's class than none.
+    pitch : dict of frozenset of Side to float
+        Roll of the pitch point, mm, of hypotheses that are cheapest with one off the reference circle.
+    """
+
+    by_sides: Mapping[frozenset[Side], float]
+    alike: float = math.inf
+    uncommon: float = 0.0
+    pitch: Mapping[frozenset[Side], float] = field(default_factory=dict)
+
+    @property
+    def chosen(self) -> frozenset[Side]:
+        """The cheapest hypothesis. A form that both sides share was made more often than both were worn to it: they are worn only where that
+        beats it by more than chance."""
+        cheapest = min(self.by_sides, key=lambda worn: self.by_sides[worn])
+        as_likely = self.alike < self.by_sides[cheapest] + rules().close
+        return NO_SIDE if len(cheapest) == len(Side) and as_likely else cheapest
+
+    def beside(self, ran: frozenset[Side]) -> SideCosts:
+        """Of the other sides alone, where flanks of some show where their mate ran."""
+        if not ran:
+            return self
+        return replace(self, by_sides={worn: cost for worn, cost in self.by_sides.items() if not worn & ran})
+
+    @property
+    def ruled_out(self) -> frozenset[frozenset[Side]]:
+        """Hypotheses that cost so much more than the chosen one that more cells would say the same."""
+        least = self.by_sides[self.chosen]
+        least += max(rules().close, rules().beyond_doubt * least)
+        return frozenset(worn for worn, cost in self.by_sides.items() if cost > least)
+
+    @property
+    def beyond_doubt(self) -> bool:
+        """Whether every other hypothesis than the chosen one is ruled out."""
+        return self.ruled_out == self.by_sides.keys() - {self.chosen}
+
+    @property
+    def not_excluded(self) -> tuple[frozenset[Side], ...]:
+        """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one.
+
+        Both sides made with what both may have lost alike is no better told by how well it fits than their class makes such a form uncommon.
+        """
+        taken, both = self.chosen, frozenset(Side)
+        limit = self.by_sides[taken] + rules().close
+        more = self.uncommon if taken == NO_SIDE else 0.0
+        return tuple(
+            worn for worn, cost in self.by_sides.items() if worn != taken and cost - (more if worn == both else 0.0) < limit
+        )
