@@ -45,7 +45,7 @@ def place(notes, words):
 
 def test_what_changes_the_meaning_of_numbers_comes_first():
     for notes in (results().notes, doubts(results())):
-        width, scatter, alone = (place(notes, words) for words in ("taken as seen", "the scanner by", "the design has one gear"))
+        width, scatter, alone = (place(notes, words) for words in ("taken as seen", "the scanner by", "he design has one gear"))
         assert width == 0 and width < scatter < alone
 
 
