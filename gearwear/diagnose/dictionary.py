@@ -109,14 +109,6 @@ def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context
     pieces = [(seen[rows], cells.points.take(rows.start + np.flatnonzero(seen[rows]))) for rows in between(cuts, len(seen))]
     candidates = list[Candidate]()
 
-    def on(part: tuple[Bools, SurfacePoints], effect: Effect, shape: Shape) -> Floats:
-        """Columns over some cells, of which those seen have points."""
-        own, points = part
-        values = cell_basis(effect, points, context, shape, cells.grid)
-        basis = np.zeros((len(own), values.shape[1]))
-        basis[own] = values
-        return basis
-
     def blocks() -> Iterator[Floats | CellColumns]:
         yield np.where(seen[:, None], cells.motion[:, motion], 0.0)
         start = len(motion)
@@ -126,9 +118,9 @@ def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context
             for shape in effect.shapes(context):
                 # Each column of a freedom for every tooth is zero on nearly all cells: in full they are held on a stretch at a time.
                 block: Floats | CellColumns = (
-                    CellColumns.of_pieces(on(piece, effect, shape) for piece in pieces)
+                    CellColumns.of_pieces(columns_on(*piece, effect, shape, context, cells.grid) for piece in pieces)
                     if effect.tooth_specific
-                    else on(whole, effect, shape)
+                    else columns_on(*whole, effect, shape, context, cells.grid)
                 )
                 count = block.count if isinstance(block, CellColumns) else block.shape[1]
                 candidates.append(Candidate(effect, shape, np.arange(start, start + count)))
@@ -144,13 +136,20 @@ def with_worn(dictionary: Dictionary, cells: Cells, context: Context) -> Diction
     seen, points = cells.seen, cells.points.take(cells.seen)
     for place, candidate in enumerate(dictionary.candidates):
         if candidate.effect.by_worn:
-            basis = np.zeros((len(seen), len(candidate.columns)))
-            basis[seen] = cell_basis(candidate.effect, points, context, candidate.shape, cells.grid)
+            basis = columns_on(seen, points, candidate.effect, candidate.shape, context, cells.grid)
             columns = np.arange(dictionary.count, dictionary.count + basis.shape[1])
             candidates = list(dictionary.candidates)
             candidates[place] = replace(candidate, columns=columns)
             dictionary = replace(dictionary.with_columns(basis), candidates=tuple(candidates))
     return dictionary
+
+
+def columns_on(seen: Bools, points: SurfacePoints, effect: Effect, shape: Shape, context: Context, grid: CellGrid) -> Floats:
+    """(m, p) an effect's columns on cells, of which those `seen` (m,) have the mean feet `points`, by `cell_basis`; 0 on the others."""
+    values = cell_basis(effect, points, context, shape, grid)
+    columns = np.zeros((len(seen), values.shape[1]))
+    columns[seen] = values
+    return columns
 
 
 def cell_basis(effect: Effect, points: SurfacePoints, context: Context, shape: Shape, grid: CellGrid) -> Floats:

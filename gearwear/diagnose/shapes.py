@@ -14,7 +14,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.by_tooth import ALIKE, ByTooth
 from gearwear.diagnose.columns import CellColumns, cuts_among
 from gearwear.diagnose.covariance import CellCovariance
-from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis
+from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis, columns_on
 from gearwear.diagnose.effects.base import Context, Effect, Shape
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.rules import rules
@@ -158,8 +158,8 @@ def _with_columns(
     dictionary, model = problem.dictionary, list[Candidate]()
     for old, new in zip(chosen, refined, strict=True):
         if new.shape != old.shape:
-            basis = np.zeros((len(cells.seen), len(old.columns)))
-            basis[cells.seen] = cell_basis(new.effect, cells.points.take(cells.seen), problem.context, new.shape, cells.grid)
+            seen, points = cells.seen, cells.points.take(cells.seen)
+            basis = columns_on(seen, points, new.effect, new.shape, problem.context, cells.grid)
             dictionary, new = dictionary.with_candidate(new.effect, new.shape, basis)
         model.append(new)
     return dictionary, tuple(model)

@@ -19,7 +19,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.diagnose.covariance import CellCovariance
-from gearwear.diagnose.dictionary import cell_basis
+from gearwear.diagnose.dictionary import columns_on
 from gearwear.diagnose.effects.face_level import FACE_LEVEL
 from gearwear.diagnose.found import Loop
 from gearwear.diagnose.gram import Gram
@@ -147,9 +147,7 @@ def model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     fields = np.zeros((len(seen), len(told)))
     points = cells.points.take(seen)
     for i, traced in enumerate(told):
-        effect, shape = traced.candidate.effect, traced.candidate.shape
-        basis = np.zeros((len(seen), len(traced.amplitudes)))
-        basis[seen] = cell_basis(effect, points, context, shape, cells.grid)
+        basis = columns_on(seen, points, traced.candidate.effect, traced.candidate.shape, context, cells.grid)
         bend = shape_columns(traced.candidate, traced.amplitudes, cells, context)
         columns += [basis, bend]
         fields[:, i] = (rules().form_error_with_shape if bend.shape[1] else rules().form_error) * (basis @ traced.amplitudes)
