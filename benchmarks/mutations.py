@@ -52,6 +52,11 @@ MUTATIONS = [
         ("inspection/radial.py", "0.01 * math.sqrt(d) + 0.8", "0.01 * math.sqrt(d) + 0.08", "inspection/test_radial.py"),
         ("inspection/radial.py", "1.0, 1.5, 2.5, 4.0", "1.0, 1.5, 2.0, 4.0", "inspection/test_radial.py"),
         ("brep/ends.py", "END_TOLERANCE = 2e-8", "END_TOLERANCE = 2e-3", "brep/test_ends.py"),
+        # limits as messages give them
+        ("design/pair.py", "CENTRE_ROUNDING = 0.5e-3", "CENTRE_ROUNDING = 0.5e-5", "design/test_limits_in_messages.py"),
+        ("design/pair.py", "CENTRE_ROUNDING = 0.5e-3", "CENTRE_ROUNDING = 0.6e-3", "design/test_limits_in_messages.py"),
+        ("design/quantity.py", "_rounded(math.ceil", "_rounded(round", "design/test_limits_in_messages.py"),
+        ("design/quantity.py", "_rounded(math.floor", "_rounded(round", "design/test_limits_in_messages.py"),
         # a mate narrower than the face
         ("diagnose/active_face.py", "misfit[fitted[:, -1] <= 0.0] = math.inf", "pass", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "> sure or not", "> -100.0 or not", "diagnose/core/test_active_face.py"),

@@ -101,7 +101,7 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float) -> Spline:
         if error <= tolerance:
             return Spline(DEGREE, np.asarray(fitted.t), np.asarray(fitted.c), error)
         if count >= MOST_POINTS:
-            raise InputError(f"a tooth curve cannot be drawn to {tolerance:.1e} mm; the best reached is {error:.1e} mm")
+            raise InputError(f"a tooth curve cannot be drawn to {tolerance:.3g} mm; the best reached is {error:.3g} mm")
         count += 2 if count < 30 else 10
 
 

@@ -24,6 +24,7 @@ from gearwear.brep.paths import drawn_turn, flank_paths
 from gearwear.brep.screw import side_turn
 from gearwear.design.gear import Gear
 from gearwear.design.modification import FlankModification
+from gearwear.design.quantity import as_given, at_most
 from gearwear.design.side import Side
 from gearwear.design.twist import Segment, segments
 from gearwear.errors import InputError
@@ -39,7 +40,7 @@ CHECKS = np.array([0.0, 0.21, 0.5, 0.83, 1.0])
 """Shares of an edge at which the points upwards are judged."""
 MOST_BEND = 0.02
 """rad; a flank that is modified at its form circle by more is bent there as no end can follow, if it cannot be drawn."""
-LIMIT_ROUNDS = 30
+LIMIT_ROUNDS = 40
 """Bisections to the size that would have fitted."""
 
 
@@ -115,13 +116,13 @@ def end_bands(gear: Gear, edges: tuple[Edge, ...]) -> tuple[list[EndBand], list[
     if size == 0.0:
         return [], []
     key = "end_rounding" if spec.end_rounding > 0.0 else "end_chamfer"
-    where = f"[{spec.name}] {key} = {size:g} mm:"
+    where = f"[{spec.name}] {key} = {as_given(size)} mm:"
     wall = gear.orientation * (gear.root_radius - gear.body_radius)
     if size >= wall and gear.body_radius > 0.0:
-        raise InputError(f"{where} reaches the {'rim' if spec.internal else 'bore'}; below {wall:.4g} mm it would not")
+        raise InputError(f"{where} reaches the {'rim' if spec.internal else 'bore'}; below {at_most(wall)} mm it would not")
     low, high = segments(gear)[0], segments(gear)[-1]
     if size >= low.high - low.low:
-        raise InputError(f"{where} reaches the groove; below {low.high - low.low:.4g} mm it would not")
+        raise InputError(f"{where} reaches the groove; below {at_most(low.high - low.low)} mm it would not")
     parallels = Parallels(edges, gear.teeth, gear.orientation)
     ends = [_End(gear, parallels, low, upper=False), _End(gear, parallels, high, upper=True)]
     bands = []
@@ -138,7 +139,7 @@ def end_bands(gear: Gear, edges: tuple[Edge, ...]) -> tuple[list[EndBand], list[
                 ) from None
             if isinstance(edge, _NotDrawn):
                 raise InputError(f"{where} its faces cannot be drawn; a smaller one would be right") from None
-            raise InputError(f"{where} leaves no {edge} on the end face; below {end.limit(size):.4g} mm it would") from None
+            raise InputError(f"{where} leaves no {edge} on the end face; below {at_most(end.limit(size))} mm it would") from None
     return bands[0][::-1], bands[1]
 
 

@@ -213,7 +213,7 @@ def _others(best: Proposal, others: Sequence[Proposal]) -> list[str]:
         return ["Nothing else in use comes near."]
     lines = ["Also near (less likely by this, where 6 is strong):"]
     for proposal in near:
-        residuals = ", ".join(f"{1e3 * residual:+.0f}" for residual in proposal.residuals)
+        residuals = ", ".join(f"{1e3 * residual:+z.0f}" for residual in proposal.residuals)
         lines.append(f"  {proposal.cost - best.cost:+5.1f}  {proposal.name}; remains {residuals} µm")
     return lines
 

@@ -247,6 +247,7 @@ def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> N
 
 def _ranges(arguments: Namespace, gear: Gear) -> Settings:
     """The ranges, sections and circles, each checked against the gear."""
+    from gearwear.design.quantity import as_given, at_least, at_most
     from gearwear.inspection import Settings
     from gearwear.inspection.settings import LONGEST
     from gearwear.inspection.stylus import check_ball
@@ -259,24 +260,26 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
             return None
         first, last = sorted(2.0 * math.hypot(gear.base_radius, value) for value in (low, high))
         if not first <= diameter <= last:
-            raise InputError(f"{name} {diameter:g}: the involute goes from {first:.3f} to {last:.3f} mm")
+            raise InputError(f"{name} {as_given(diameter)}: the involute goes from {at_least(first, 3)} to {at_most(last, 3)} mm")
         return math.sqrt(max(0.25 * diameter**2 - gear.base_radius**2, 0.0))
 
     def positive(name: str, value: float | None) -> float | None:
         if value is not None and not 0.0 < value <= LONGEST:
-            raise InputError(f"{name} {value:g}: a length above 0 mm and at most {LONGEST:g} mm would be right")
+            raise InputError(f"{name} {as_given(value)}: a length above 0 mm and at most {LONGEST:g} mm would be right")
         return value
 
     def on_face(name: str, between: tuple[float, float] | None) -> tuple[float, float] | None:
         if between is not None and not 0.0 <= between[0] < between[1] <= gear.face_width:
-            raise InputError(f"{name} {between[0]:g},{between[1]:g}: the face goes from 0 to {gear.face_width:g} mm")
+            raise InputError(
+                f"{name} {as_given(between[0])},{as_given(between[1])}: the face goes from 0 to {as_given(gear.face_width)} mm"
+            )
         return between
 
     check_ball(arguments.stylus_radius_mm, gear)
     between = arguments.profile_roll_mm
     if between is not None and not (min(low, high) <= between[0] and between[1] <= max(low, high)):
         raise InputError(
-            f"--profile-roll-mm {between[0]:g},{between[1]:g}: the involute goes from {min(low, high):.3f} to {max(low, high):.3f} mm of roll"
+            f"--profile-roll-mm {as_given(between[0])},{as_given(between[1])}: the involute goes from {at_least(min(low, high), 3)} to {at_most(max(low, high), 3)} mm of roll"
         )
     if arguments.profile_diameters_mm is not None:
         if between is not None:
@@ -290,7 +293,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
     if section is not None:
         half = positive("--profile-half-width-mm", arguments.profile_half_width_mm) or 0.05 * gear.face_width
         if not 0.0 <= section <= gear.face_width:
-            raise InputError(f"--profile-z-mm {section:g}: the face goes from 0 to {gear.face_width:g} mm")
+            raise InputError(f"--profile-z-mm {as_given(section)}: the face goes from 0 to {as_given(gear.face_width)} mm")
         band = (section - half, section + half)
     elif arguments.profile_half_width_mm is not None:
         raise InputError("--profile-half-width-mm needs the place of the section, as --profile-z-mm MM")
@@ -317,6 +320,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
 
 def _settings(arguments: Namespace, gear: Gear, edition: Edition) -> Settings:
     """What the options say, each checked against the gear."""
+    from gearwear.design.quantity import as_given, at_least, at_most
     from gearwear.inspection import class_k_bands, read_k_bands
     from gearwear.inspection.prepared import check_settings
 
@@ -325,7 +329,7 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition) -> Settings:
         low, high = sorted((2.0 * gear.form_radius, 2.0 * math.hypot(gear.base_radius, gear.tip_roll)))
         if not low <= arguments.control_diameter <= high:
             raise InputError(
-                f"--control-diameter {arguments.control_diameter:g}: the involute goes from {low:.3f} to {high:.3f} mm"
+                f"--control-diameter {as_given(arguments.control_diameter)}: the involute goes from {at_least(low, 3)} to {at_most(high, 3)} mm"
             )
         start = math.sqrt((0.5 * arguments.control_diameter) ** 2 - gear.base_radius**2)
     bands = None

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.stated import kept
 from gearwear.design.pair import Design
+from gearwear.design.quantity import at_least
 from gearwear.design.spec import Artefact, DatumSpec, ScannerSpec
 from gearwear.errors import InputError
 from gearwear.robust import median_scale
@@ -177,10 +178,10 @@ def _scale(seen: Sequence[SeenArtefact]) -> tuple[float, float, tuple[str, ...]]
     solution = covariance @ used.T @ (excess * weight)
     std = math.sqrt(float(covariance[0, 0]))
     sizes = ", ".join(f"{fit.artefact.kind} {fit.artefact.diameter:g} mm seen as {fit.diameter:.4f}" for fit in seen)
-    said = f"lengths are brought to the scale of the artefacts ({sizes}): {-1e6 * solution[0]:+.0f} ± {1e6 * std:.0f} ppm"
+    said = f"lengths are brought to the scale of the artefacts ({sizes}): {-1e6 * solution[0]:+z.0f} ± {1e6 * std:.0f} ppm"
     if both:
         layer = 1e3 * float(solution[1])
-        said += f"; they show a layer of {layer:+.1f} ± {1e3 * math.sqrt(float(covariance[1, 1])):.1f} µm on their surfaces, which is not taken off"
+        said += f"; they show a layer of {layer:+z.1f} ± {1e3 * math.sqrt(float(covariance[1, 1])):.1f} µm on their surfaces, which is not taken off"
     elif len(seen) > 1:
         said += "; they are too alike in size to tell a layer on their surfaces from the scale: none is assumed"
     else:
@@ -202,9 +203,9 @@ def _check_scale(seen: Sequence[SeenArtefact], scale: float, std: float, limit: 
     off = max(abs(scale), abs(worst.excess) / worst.artefact.diameter)
     if off > limit:
         raise InputError(
-            f"{sight}, {1e6 * off:.0f} ppm off where up to {1e6 * limit:.0f} are expected; check diameter_mm, or state [scanner] scale_ppm_max"
+            f"{sight}, {at_least(1e6 * off, 0)} ppm off where up to {1e6 * limit:.0f} are expected; check diameter_mm, or state [scanner] scale_ppm_max"
         )
     if LIMIT_STDS * std > limit:
         raise InputError(
-            f"{sight}, and tells the scale to ± {1e6 * std:.0f} ppm alone; a smaller std_um or more points would be right"
+            f"{sight}, and tells the scale to ± {at_least(1e6 * std, 0)} ppm alone; a smaller std_um or more points would be right"
         )

@@ -10,6 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.design.quantity import at_most
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, OTHER, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.errors import InputError
@@ -130,7 +131,7 @@ def band_axis(measured: MeasuredGear) -> BoreAxis:
     least, wide = LEAST_SPAN * measured.gear.normal_module, max(heights) - min(heights)
     if wide < least:
         raise InputError(
-            f"an axis from diameter bands: they were seen over {wide:.3g} mm of height, whatever was stated; at least {least:g} mm tell a tilt"
+            f"an axis from diameter bands: they were seen over {at_most(wide, 2)} mm of height, whatever was stated; at least {least:g} mm tell a tilt"
         )
     return _fitted(groups, FREE)
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from gearwear.arrays import Floats
 from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function, roll_length
 from gearwear.design.modification import DrawnFlank
+from gearwear.design.quantity import apart, as_given, at_least, at_most, not_zero
 from gearwear.design.rack import RackTip, rack_root
 from gearwear.design.ring import SHIFT_BY_ISO, ring_root
 from gearwear.design.root import RootCurve, ToothSection
@@ -90,9 +91,9 @@ class Gear:
         psi_b = thickness / (2.0 * r) + orientation * involute_function(alpha_t)
         pitch_angle = 2.0 * math.pi / spec.teeth
         if min(rf, ra) <= 0.0 or orientation * (ra - rf) <= 0.0:
-            where = "inside" if spec.internal else "outside"
+            where, (tip, bottom) = "inside" if spec.internal else "outside", apart(2 * ra, 2 * rf)
             raise InputError(
-                f"[{name}] tip diameter {2 * ra:.4f} mm and root diameter {2 * rf:.4f} mm: the tip must be {where} the root, and both above 0"
+                f"[{name}] tip diameter {tip} mm and root diameter {bottom} mm: the tip must be {where} the root, and both above 0"
             )
         if ra <= rb:
             left = (
@@ -100,7 +101,8 @@ class Gear:
                 if spec.internal
                 else "no involute is left"
             )
-            raise InputError(f"[{name}] tip diameter {2 * ra:.4f} mm lies inside the base circle {2 * rb:.4f} mm: {left}")
+            tip, base = apart(2 * ra, 2 * rb)
+            raise InputError(f"[{name}] tip diameter {tip} mm lies inside the base circle {base} mm: {left}")
 
         flank_end = ra - orientation * spec.tip_chamfer
         if spec.tip_rounding > 0.0:
@@ -112,8 +114,9 @@ class Gear:
         section = ToothSection(r, rb, ra, rf, flank_end, alpha_t, psi_b)
         root = ring_root(spec, section) if spec.internal else rack_root(spec, section)
         if orientation * (flank_end - root.form_radius) <= 0.0:
+            form, end = apart(2 * root.form_radius, 2 * flank_end)
             raise InputError(
-                f"[{name}] form diameter {2 * root.form_radius:.4f} mm reaches the flank's end {2 * flank_end:.4f} mm: no involute is left; a smaller dedendum, more teeth or more profile shift would leave one"
+                f"[{name}] form diameter {form} mm reaches the flank's end {end} mm: no involute is left; a smaller dedendum, more teeth or more profile shift would leave one"
             )
         gear = cls(
             spec=spec,
@@ -153,7 +156,7 @@ class Gear:
         reference_half_angle = self.tooth_thickness / (2.0 * self.reference_radius)
         if not 0.0 < (reference_half_angle if spec.internal else self.base_half_angle) < math.pi:
             raise InputError(
-                f"[{name}] tooth thickness {self.tooth_thickness:.4f} mm at the reference circle: no tooth is left; less thinning or more profile shift"
+                f"[{name}] tooth thickness {not_zero(self.tooth_thickness)} mm at the reference circle: no tooth is left; less thinning or more profile shift"
             )
         if spec.tip_rounding > 0.0 and self.tip_half_angle <= 0.0:
             raise InputError(f"[{name}] tip_rounding = {spec.tip_rounding:g} mm leaves no top land; a smaller one would be right")
@@ -166,7 +169,7 @@ class Gear:
                 else ""
             )
             raise InputError(
-                f"[{name}] the tooth is pointed: at tip diameter {2 * self.tip_radius:.4f} mm the top land is {top_land:.4f} mm{pointed}; a smaller addendum, profile_shift or tip_chamfer would leave a land"
+                f"[{name}] the tooth is pointed: at tip diameter {2 * self.tip_radius:.4f} mm the top land is {not_zero(top_land)} mm{pointed}; a smaller addendum, profile_shift or tip_chamfer would leave a land"
             )
         if spec.tip_chamfer > 0.0 and self.tip_half_angle > float(self.half_angle(self.tip_radius)):
             lean = math.degrees(math.acos(self.base_radius / self.flank_end_radius))
@@ -186,15 +189,17 @@ class Gear:
             )
         if spec.internal and spec.rim_diameter > 0.0 and not 0.5 * spec.rim_diameter > self.root_radius:
             raise InputError(
-                f"[{name}] rim_diameter = {spec.rim_diameter:g} mm: must be above the root diameter {2 * self.root_radius:.4f} mm"
+                f"[{name}] rim_diameter = {as_given(spec.rim_diameter)} mm: must be above the root diameter {at_least(2 * self.root_radius)} mm"
             )
         if not 0.5 * spec.bore_diameter < self.root_radius:
             raise InputError(
-                f"[{name}] bore_diameter = {spec.bore_diameter:g} mm: must be below the root diameter {2 * self.root_radius:.4f} mm"
+                f"[{name}] bore_diameter = {as_given(spec.bore_diameter)} mm: must be below the root diameter {at_most(2 * self.root_radius)} mm"
             )
         if not 2.0 * spec.end_edge < spec.face_width:
             key = "end_rounding" if spec.end_rounding > 0.0 else "end_chamfer"
-            raise InputError(f"[{name}] {key} = {spec.end_edge:g} mm: must be below half the face width {spec.face_width:g} mm")
+            raise InputError(
+                f"[{name}] {key} = {as_given(spec.end_edge)} mm: must be below half the face width {as_given(spec.face_width)} mm"
+            )
         if self.modified:
             if spec.gap > 0.0:
                 raise InputError(f"[{name}] gap = {spec.gap:g} mm: flanks of double helical gears cannot be modified yet")

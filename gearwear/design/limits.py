@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gearwear.design.quantity import as_given, at_most
 from gearwear.errors import InputError
 
 MOST = 1e9
@@ -62,7 +63,7 @@ class Limits:
         for key, value in self.by_quantity().items():
             if key.endswith("_mm") and value >= pitch:
                 raise InputError(
-                    f"[limits] {key} = {value:g}: more than the pitch of {pitch:.4g} mm, and so none; of µm {1e-3 * value:g} would be right"
+                    f"[limits] {key} = {as_given(value)}: more than the pitch of {at_most(pitch)} mm, and so none; of µm {1e-3 * value:g} would be right"
                 )
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearwear.arrays import Floats
+from gearwear.design.quantity import as_given, at_least, at_most
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 
@@ -257,12 +258,12 @@ class DrawnFlank:
                     else (f"{end}_relief_length", getattr(drawn, f"{end}_relief_length"))
                 )
                 raise InputError(
-                    f"[{section}] {key} = {value:g} mm: the relief must begin on the flank, between the diameters {low:.4f} and "
-                    f"{high:.4f} mm, at most {last - first:.4f} mm of roll from its end"
+                    f"[{section}] {key} = {as_given(value)} mm: the relief must begin on the flank, between the diameters {at_least(low)} and "
+                    f"{at_most(high)} mm, at most {at_most(last - first)} mm of roll from its end"
                 )
         if 2.0 * drawn.end_relief_length > self.face_width:
             raise InputError(
-                f"[{section}] end_relief_length = {drawn.end_relief_length:g} mm: must be at most half the face width {self.face_width:g} mm"
+                f"[{section}] end_relief_length = {as_given(drawn.end_relief_length)} mm: must be at most half the face width {as_given(self.face_width)} mm"
             )
         steepest = max(
             _steepest(self.along_profile, self.form_roll, self.tip_roll, self._knees(*self._ends)),
@@ -270,7 +271,7 @@ class DrawnFlank:
         )
         if steepest > STEEPEST:
             raise InputError(
-                f"[{section}] the modifications of the {self.side} flank fall by {steepest:.3f} mm a mm: at most {STEEPEST:g} is a modified "
+                f"[{section}] the modifications of the {self.side} flank fall by {at_least(steepest, 3)} mm a mm: at most {STEEPEST:g} is a modified "
                 "involute; a smaller amount or a longer relief would be right"
             )
 

@@ -9,9 +9,10 @@ import numpy as np
 
 from gearwear.design.gear import Gear
 from gearwear.design.internal import InternalPair, Wheel
-from gearwear.design.involute import involute_function
+from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.limits import Limits
 from gearwear.design.load import LoadSpec
+from gearwear.design.quantity import apart, as_given, at_least, at_most, not_zero
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
 from gearwear.design.weighing import WeighingSpec
@@ -19,6 +20,10 @@ from gearwear.errors import InputError
 
 FILLET_KEYS = "cutter_teeth and cutter_tip_radius, or fillet_radius,"
 """What a drawing would say of a ring's root."""
+CENTRE_ROUNDING = 0.5e-3
+"""mm; half the last digit of a centre distance written to 1 µm: by so much it may be on the wrong side of what the gears have room for."""
+_NOISE = 1e-9
+"""mm; of the computer's digits."""
 MAX_HELIX_DIFFERENCE = 1e-9
 """Largest sum of the two helix angles of a pair, rad: they are opposite."""
 
@@ -132,8 +137,9 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
             f"[gear] gap = {g.gap:g} mm does not mesh with the pinion's {p.gap:g} mm: a double helical gear runs with a double helical gear"
         )
     if not same_base_pitch(pinion, gear):
+        pitches = apart(gear.base_pitch, pinion.base_pitch, digits=6)
         raise InputError(
-            f"[gear] module {g.normal_module:g} mm and pressure angle {math.degrees(g.normal_pressure_angle):g}° do not mesh with the pinion's {p.normal_module:g} mm and {math.degrees(p.normal_pressure_angle):g}°: base pitches {gear.base_pitch:.6f} and {pinion.base_pitch:.6f} mm must be equal"
+            f"[gear] module {g.normal_module:g} mm and pressure angle {math.degrees(g.normal_pressure_angle):g}° do not mesh with the pinion's {p.normal_module:g} mm and {math.degrees(p.normal_pressure_angle):g}°: base pitches {' and '.join(pitches)} mm must be equal"
         )
     standard = abs(pinion.reference_radius + orientation * gear.reference_radius)
     centre = standard if pair.centre_distance is None else pair.centre_distance
@@ -141,27 +147,33 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     if not centre > abs(bases):
         relation = "difference" if g.internal else "sum"
         raise InputError(
-            f"[pair] centre_distance = {centre:g} mm: must be above the {relation} of the base radii, {abs(bases):.4f} mm"
+            f"[pair] centre_distance = {as_given(centre)} mm: must be above the {relation} of the base radii, {at_least(abs(bases))} mm"
         )
     for part, clearance in zip(("pinion", "gear"), tip_clearances(pinion, gear, centre), strict=True):
-        if clearance < 0.0:
+        if clearance < -CENTRE_ROUNDING - _NOISE:
             limit = centre - orientation * clearance
-            bound = f"at most {limit:.4f} mm is possible" if g.internal else f"at least {limit:.4f} mm is needed"
+            bound = f"at most {at_most(limit)} mm is possible" if g.internal else f"at least {at_least(limit)} mm is needed"
             raise InputError(
-                f"[pair] centre_distance = {centre:g} mm: the {part}'s tip digs {-clearance:.4f} mm into its mate's root; {bound}"
+                f"[pair] centre_distance = {as_given(centre)} mm: the {part}'s tip digs {not_zero(-clearance)} mm into its mate's root; {bound}"
             )
 
     working = math.acos(abs(bases) / centre)
     line = orientation * centre * math.sin(working)
     play = base_backlash(pinion, gear, working) / math.cos(working)
-    if play < -1e-9 * standard:
+    tight = tight_involute(pinion, gear)
+    without_play = abs(bases) / math.cos(inverse_involute(tight)) if tight >= 0.0 else math.inf
+    # Of a ring whose teeth jam at every distance `tight` is negative; outside one no teeth jam then.
+    if play < 0.0 and not abs(centre - without_play) <= CENTRE_ROUNDING + _NOISE:
+        remedy = f"a {'smaller' if g.internal else 'larger'} centre distance"
+        if math.isfinite(without_play):
+            remedy += f" ({f'at most {at_most(without_play)}' if g.internal else f'at least {at_least(without_play)}'} mm)"
         raise InputError(
-            f"[pair] centre_distance = {centre:g} mm: the teeth jam, backlash would be {play:.4f} mm; a {'smaller' if g.internal else 'larger'} centre distance, less profile_shift or more thinning is needed"
+            f"[pair] centre_distance = {as_given(centre)} mm: the teeth jam, backlash would be {not_zero(play)} mm; {remedy}, less profile_shift or more thinning is needed"
         )
     start, end = path_ends(pinion, gear, line)
     if end <= start:
         raise InputError(
-            f"[pair] centre_distance = {centre:g} mm: the gears do not reach each other, the path of contact is empty"
+            f"[pair] centre_distance = {as_given(centre)} mm: the gears do not reach each other, the path of contact is empty"
         )
 
     warnings = []
@@ -174,11 +186,11 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         depth = tip_penetration(member, mate, centre)
         if depth > 1e-6 * member.transverse_module and not member.root_stated:
             warnings.append(
-                f"the mate's tip would dig {depth:.4f} mm into the {part}'s root fillet, as that is assumed; {FILLET_KEYS} would tell"
+                f"the mate's tip would dig {not_zero(depth)} mm into the {part}'s root fillet, as that is assumed; {FILLET_KEYS} would tell"
             )
         elif depth > 1e-6 * member.transverse_module:
             raise InputError(
-                f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {depth:.4f} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {root_remedy(member)} of the {part} would clear it"
+                f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {not_zero(depth)} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {root_remedy(member)} of the {part} would clear it"
             )
         reached = reached_roll(member, mate, abs(line))
         past = -reached
@@ -187,7 +199,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
             undercut = "is undercut and " if member.undercut else ""
             bound = "down to" if mate.spec.internal else "up to"
             warnings.append(
-                f"the mate's tip passes the {part}'s interference point by {past:.3f} mm of roll (no interference {bound} tip radius {limit:.3f} mm); the {part} {undercut}clears it, but the path of contact ends at its form circle"
+                f"the mate's tip passes the {part}'s interference point by {not_zero(past, 3)} mm of roll (no interference {bound} tip radius {(at_least if mate.spec.internal else at_most)(limit, 3)} mm); the {part} {undercut}clears it, but the path of contact ends at its form circle"
             )
         elif member.orientation * (reached - member.form_roll) < -1e-9:
             warnings.append(
@@ -219,7 +231,7 @@ def inside_ring(pinion: Gear, ring: Gear, centre_distance: float, play: float) -
         free = play * math.cos(pair.working_angle) / ring.base_radius
         if margin + free < 0.0:
             raise InputError(
-                f"[pair] interference: the pinion's tips foul the ring's where they leave each other, by {-margin * ring.tip_radius:.4f} mm of arc; "
+                f"[pair] interference: the pinion's tips foul the ring's where they leave each other, by {not_zero(-margin * ring.tip_radius)} mm of arc; "
                 "smaller addenda or a greater difference of teeth would clear them"
             )
         said.append("the pinion's tips clear the ring's, where they leave each other, by the backlash alone")

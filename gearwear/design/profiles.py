@@ -13,8 +13,12 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import as_given, at_least, at_most
 from gearwear.design.side import Side
 from gearwear.errors import InputError
+
+ROUNDING = 1e-9
+"""mm; of a radius that came from a diameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +65,9 @@ class ToothProfiles:
 
     def thickness(self, radius: float) -> Floats:
         """Tooth thickness r (ψ_left + ψ_right) at `radius`, mm of arc; (teeth, n_z). InputError beyond the radii that are known."""
-        if not self.radius[0] <= radius <= self.radius[-1]:
+        if not self.radius[0] - ROUNDING <= radius <= self.radius[-1] + ROUNDING:
             raise InputError(
-                f"radius {radius:g} mm: the profiles are known from {self.radius[0]:.4f} to {self.radius[-1]:.4f} mm, and one of these would be right"
+                f"radius {as_given(radius)} mm: the profiles are known from {at_least(self.radius[0])} to {at_most(self.radius[-1])} mm, and one of these would be right"
             )
         whole = self.half_angle.sum(axis=1)
         at = np.apply_along_axis(lambda psi: np.interp(radius, self.radius, psi), -1, whole)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 MISSING = "–"
 UNITS = {"um": "µm", "mm": "mm", "deg": "°", "mm2": "mm²", "mm3": "mm³", "ppm": "ppm", "1": ""}
@@ -25,6 +25,72 @@ def number(value: object, digits: int = 2) -> str:
     if not any(digit in text for digit in "123456789"):
         text = text.lstrip("-")  # no minus zero
     return text.replace("-", "−").replace(",", SPACE)
+
+
+def at_least(limit: float, digits: int = 4) -> str:
+    """A limit from below, rounded up: what is written keeps the limit, and what does not keep it does not read like it.
+
+    >>> at_least(114.30003), at_least(114.3), at_least(-0.00001)
+    ('114.3001', '114.3000', '0.0000')
+    """
+    return _rounded(math.ceil, limit, digits)
+
+
+def at_most(limit: float, digits: int = 4) -> str:
+    """A limit from above, rounded down.
+
+    >>> at_most(114.30007), at_most(5.0, 3)
+    ('114.3000', '5.000')
+    """
+    return _rounded(math.floor, limit, digits)
+
+
+def _rounded(way: Callable[[float], int], limit: float, digits: int) -> str:
+    """A millionth of the last decimal is noise of the computer, no reason for the next one."""
+    steps = limit * 10.0**digits
+    return f"{way(round(steps, 6)) / 10.0**digits:z.{digits}f}" if abs(steps) < 1e15 else f"{limit:z.{digits}f}"
+
+
+def not_zero(value: float, digits: int = 4) -> str:
+    """A number that is told since it is not zero: where these decimals would be zeros, one significant digit.
+
+    >>> not_zero(-0.01234), not_zero(-3.2e-6), not_zero(0.0)
+    ('-0.0123', '-3e-06', '0.0000')
+    """
+    text = f"{value:z.{digits}f}"
+    return text if value == 0.0 or any(digit in text for digit in "123456789") else f"{value:.1g}"
+
+
+def apart(*values: float, digits: int = 4) -> list[str]:
+    """Numbers with as many decimals as tell those apart that differ.
+
+    >>> apart(34.0, 35.0), apart(34.0, 34.00001, digits=2)
+    (['34.0000', '35.0000'], ['34.00000', '34.00001'])
+    """
+    most = 15
+    while True:
+        written = [f"{value:z.{digits}f}" for value in values]
+        if digits >= most or len(set(written)) == len(set(values)):
+            return written
+        digits += 1
+
+
+def outside(value: float, low: float, high: float, digits: int = 3) -> str:
+    """A number outside of a range, to as many significant digits as show it.
+
+    >>> outside(16.748, -2.0, 4.0), outside(4.0001, -2.0, 4.0)
+    ('16.7', '4.0001')
+    """
+    return next(text for d in range(digits, 18) if not low <= float(text := f"{value:.{d}g}") <= high or d == 17)
+
+
+def as_given(value: float) -> str:
+    """A number as it was given, to twelve digits.
+
+    >>> as_given(114.3), as_given(114.29995), as_given(0.1 + 0.2)
+    ('114.3', '114.29995', '0.3')
+    """
+    return f"{value:.12g}"
 
 
 def significant(value: object, digits: int = 3) -> str:

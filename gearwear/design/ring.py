@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from gearwear.design.fillet_arc import FilletArc
 from gearwear.design.internal import InternalPair, Wheel
 from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function, roll_length
+from gearwear.design.quantity import apart, as_given, at_most
 from gearwear.design.rack import bisect
 from gearwear.design.root import RootPart, ToothSection
 from gearwear.design.shaper import ShaperTip
@@ -137,9 +138,10 @@ class _Shaper:
         """Refuse a cutter that does not leave this ring."""
         where, pair = f"[{spec.name}] cutter_teeth = {self.teeth}:", self.pair(section, spec.teeth)
         if pair.involute_margin < 0.0:
+            within, end = apart(2 * math.hypot(section.base_radius, self.line), 2 * section.flank_end_radius)
             raise InputError(
-                f"{where} cuts away the ring's tips within diameter {2 * math.hypot(section.base_radius, self.line):.4f} mm (they end at "
-                f"{2 * section.flank_end_radius:.4f}); more cutter teeth or a smaller addendum would be right ({SHIFT_BY_ISO})"
+                f"{where} cuts away the ring's tips within diameter {within} mm (they end at "
+                f"{end}); more cutter teeth or a smaller addendum would be right ({SHIFT_BY_ISO})"
             )
         if pair.fouling_margin < 0.0:
             raise InputError(
@@ -172,8 +174,8 @@ def _arc(spec: GearSpec, section: ToothSection, radius: float) -> RootPart:
     most = _largest_arc(spec, section)
     if radius > most:
         raise InputError(
-            f"[{spec.name}] fillet_radius = {radius:g} mm: too large for the space at root diameter {2 * section.root_radius:.4f} mm, at most "
-            f"{math.floor(1e4 * most) / 1e4:g} mm"
+            f"[{spec.name}] fillet_radius = {as_given(radius)} mm: too large for the space at root diameter {2 * section.root_radius:.4f} mm, at most "
+            f"{at_most(most)} mm"
         )
     return _by_arc(spec, section, radius, stated=True)
 

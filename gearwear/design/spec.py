@@ -14,6 +14,7 @@ from enum import StrEnum
 from numbers import Integral
 
 from gearwear.design.modification import AS_GENERATED, FlankModification
+from gearwear.design.quantity import as_given
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
@@ -514,7 +515,7 @@ class DatumSpec:
         if self.temperature is not None:
             said.append(
                 f"lengths are referred from {self.temperature:g} °C to {REFERENCE_TEMPERATURE:g} °C with {1e6 * self.expansion:g} ppm/K: "
-                f"{1e6 * (self.scale - 1.0):+.0f} ppm".replace("-", "−")
+                f"{1e6 * (self.scale - 1.0):+z.0f} ppm".replace("-", "−")
             )
         return tuple(said)
 
@@ -541,4 +542,4 @@ def check_module(section: str, module: float) -> None:
 
 def _between(section: str, label: str, value: float, low: float, high: float, unit: str) -> None:
     if not low <= value <= high:  # refuses NaN too
-        raise InputError(f"[{section}] {label} = {value:g} {unit}: must lie from {low:g} to {high:g}")
+        raise InputError(f"[{section}] {label} = {as_given(value)} {unit}: must lie from {low:g} to {high:g}")

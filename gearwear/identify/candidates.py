@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow, few
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import as_given, at_most
 from gearwear.design.standards import FRACTION, MM_PER_INCH, diametral_pitch
 from gearwear.design.surface import END_LOW, FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints, locate
 from gearwear.errors import InputError
@@ -93,7 +94,7 @@ class CandidateGear(Card):
         return f"{self.proposal.name}; {fit}"
 
     def rows(self) -> list[CardRow]:
-        return [(left.surface, f"{1e3 * left.median:+.1f} ± {1e3 * left.scatter:.1f} µm") for left in self.left]
+        return [(left.surface, f"{1e3 * left.median:+z.1f} ± {1e3 * left.scatter:.1f} µm") for left in self.left]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -182,7 +183,7 @@ def find_candidates(
         raise InputError(f"bore {bore:g} mm: the scan is of a ring, which has none; to leave it out would be right")
     if bore is not None and not seen.internal and not bore < 2.0 * seen.root_radius:
         raise InputError(
-            f"bore {bore:g} mm: below the root diameter of the scan, {2.0 * seen.root_radius:.3f} mm, would be right"
+            f"bore {as_given(bore)} mm: below the root diameter of the scan, {at_most(2.0 * seen.root_radius, 3)} mm, would be right"
         )
     if seen.internal and len(seen.halves) > 1:
         raise InputError(f"the scan looks like {seen.what}; double helical rings are out of scope")

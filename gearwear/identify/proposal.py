@@ -126,9 +126,9 @@ class Proposal:
         if self.helix_angle:
             parts.append(f"helix {math.degrees(abs(self.helix_angle)):g}° {'right' if self.helix_angle > 0.0 else 'left'} hand")
         if self.profile_shift:
-            parts.append(f"shift {self.profile_shift:+.3f}")
+            parts.append(f"shift {self.profile_shift:+z.3f}")
         if self.thinning:
-            parts.append(f"thinning {self.thinning:+.3f} mm")
+            parts.append(f"thinning {self.thinning:+z.3f} mm")
         if self.shortening:
             parts.append(f"tip shortened by {self.shortening:.3f} modules")
         if self.coat:

@@ -305,7 +305,7 @@ def _staggered(halves: Sequence[Teeth], ends: Sequence[FaceEnds]) -> list[str]:
     if abs(pitches) < STAGGER:
         return []
     return [
-        f"the teeth of the upper half stand turned by {pitches:+.3f} pitches against the lower's, each in the middle of its half: a design "
+        f"the teeth of the upper half stand turned by {pitches:+z.3f} pitches against the lower's, each in the middle of its half: a design "
         "has them at one angle, and a comparison will show it as a shift in height"
     ]
 

@@ -16,6 +16,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute, involute_function
+from gearwear.design.quantity import as_given, at_least, at_most, outside
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
@@ -163,11 +164,11 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     if teeth not in fits:
         right = f"{fits[0]} to {fits[-1]} teeth can be spanned" if fits else "no number of teeth can be spanned"
         raise InputError(
-            f"[{gear.spec.name}] span over {teeth} teeth touches at a roll length of {roll:.3f} mm, the involute has {gear.form_roll:.3f} to {gear.tip_roll:.3f} mm: {right}"
+            f"[{gear.spec.name}] span over {teeth} teeth touches at a roll length of {outside(roll, gear.form_roll, gear.tip_roll, 5)} mm, the involute has {at_least(gear.form_roll)} to {at_most(gear.tip_roll)} mm: {right}"
         )
     if needs(teeth) > gear.face_width:
         raise InputError(
-            f"[{gear.spec.name}] span over {teeth} teeth cannot be measured: on helical teeth its plates need a face width of {needs(teeth):.2f} mm, there are {gear.face_width:g} mm; the dimension over balls can"
+            f"[{gear.spec.name}] span over {teeth} teeth cannot be measured: on helical teeth its plates need a face width of {at_least(needs(teeth), 2)} mm, there are {as_given(gear.face_width)} mm; the dimension over balls can"
         )
     length = 2.0 * roll / cosine
     rise = length * math.sin(gear.base_helix_angle)
@@ -427,7 +428,8 @@ def _pin_fault(gear: Gear, pins: Pins) -> str:
     """What is wrong with a pin, or nothing."""
     orientation, half = gear.orientation, 0.5 * pins.diameter
     if not orientation * gear.form_roll <= orientation * pins.roll <= orientation * gear.tip_roll:
-        return f"touches at a roll length of {pins.roll:.3f} mm, the involute has {min(gear.form_roll, gear.tip_roll):.3f} to {max(gear.form_roll, gear.tip_roll):.3f} mm"
+        low, high = sorted((gear.form_roll, gear.tip_roll))
+        return f"touches at a roll length of {outside(pins.roll, low, high, 5)} mm, the involute has {at_least(low)} to {at_most(high)} mm"
     if orientation * (pins.centre_radius - gear.root_radius) <= half:
         return f"rests on the root circle (diameter {2 * gear.root_radius:.4f} mm)"
     if orientation * (pins.centre_radius - gear.tip_radius) <= -half:

@@ -13,6 +13,7 @@ from enum import StrEnum
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.quantity import as_given
 from gearwear.errors import InputError
 from gearwear.inspection.estimate import RESOLVABLE_SHARE, Estimate
 from gearwear.inspection.ranges import Range
@@ -55,11 +56,11 @@ class KBand:
             )
         for before, after in zip(self.station[:-1], self.station[1:], strict=True):
             if not after > before:
-                raise InputError(f"a K band's places must rise: {before:.4g} mm is followed by {after:.4g} mm")
+                raise InputError(f"a K band's places must rise: {as_given(before)} mm is followed by {as_given(after)} mm")
         for place, low, high in zip(self.station, self.lower, self.upper, strict=True):
             if not high > low:
                 raise InputError(
-                    f"a K band's upper limit must be above the lower one: {1e3 * high:g} and {1e3 * low:g} µm at {place:.4g} mm"
+                    f"a K band's upper limit must be above the lower one: {as_given(1e3 * high)} and {as_given(1e3 * low)} µm at {as_given(place)} mm"
                 )
 
     @classmethod

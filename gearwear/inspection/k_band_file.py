@@ -9,6 +9,7 @@ from typing import Any
 
 from gearwear.design.files.toml import parse_toml, read_small
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import as_given, at_least
 from gearwear.errors import InputError, readable
 from gearwear.inspection.k_band import KBand, KBands
 from gearwear.inspection.ranges import helix_range, profile_ends, profile_place, profile_range
@@ -143,7 +144,9 @@ def _numbers(where: str, key: str, table: dict[str, Any]) -> list[float]:
 def _from_diameter(value: float, gear: Gear, where: str) -> float:
     radius = 0.5 * value
     if radius < gear.base_radius:
-        raise InputError(f"{where} diameter_mm = {value:g} lies inside the base circle, {2 * gear.base_radius:.3f} mm")
+        raise InputError(
+            f"{where} diameter_mm = {as_given(value)} lies inside the base circle, {at_least(2 * gear.base_radius, 3)} mm"
+        )
     return profile_place(gear, float(gear.roll_length(radius)))
 
 

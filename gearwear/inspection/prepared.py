@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import as_given, at_least, at_most
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
 from gearwear.inspection.additive import (
@@ -168,15 +169,17 @@ def check_settings(settings: Settings, gear: Gear) -> None:
         ("band of the pitch", settings.pitch_band, face, "of height: the face"),
     ):
         if band is not None and not (min(band) < high and max(band) > low):
-            raise InputError(f"the {name} from {band[0]:g} to {band[1]:g} mm {of} goes from {low:.3f} to {high:.3f} mm")
+            raise InputError(
+                f"the {name} from {as_given(band[0])} to {as_given(band[1])} mm {of} goes from {at_least(low, 3)} to {at_most(high, 3)} mm"
+            )
     low, high = involute
     if settings.pitch_roll is not None and not low - ON_INVOLUTE <= settings.pitch_roll <= high + ON_INVOLUTE:
         raise InputError(
-            f"the circle of the pitch at {settings.pitch_roll:g} mm of roll: the involute goes from {low:.3f} to {high:.3f} mm"
+            f"the circle of the pitch at {as_given(settings.pitch_roll)} mm of roll: the involute goes from {at_least(low, 3)} to {at_most(high, 3)} mm"
         )
     if settings.slope_length is not None and settings.slope_length > LONGEST_STATED * (high - low):
         raise InputError(
-            f"slope stated over {settings.slope_length:g} mm: at most {LONGEST_STATED * (high - low):.0f} mm would be right, {LONGEST_STATED:g} involutes"
+            f"slope stated over {as_given(settings.slope_length)} mm: at most {at_most(LONGEST_STATED * (high - low), 0)} mm would be right, {LONGEST_STATED:g} involutes"
         )
     if settings.sector is not None and settings.sector >= gear.teeth:
         raise InputError(f"sector of {settings.sector} pitches: 1 to {gear.teeth - 1} would be right for {gear.teeth} teeth")
@@ -188,7 +191,7 @@ def check_settings(settings: Settings, gear: Gear) -> None:
     for name, cutoff, where in (("profile", settings.profile_cutoff, profile), ("helix", settings.helix_cutoff, helix)):
         if cutoff is not None and not FINEST_CUTOFF * where.length <= cutoff <= where.length:
             raise InputError(
-                f"cut-off of the {name}'s filter, {cutoff:g} mm: {FINEST_CUTOFF * where.length:.3g} to {where.length:.3g} mm would be right for that range"
+                f"cut-off of the {name}'s filter, {as_given(cutoff)} mm: {at_least(FINEST_CUTOFF * where.length)} to {at_most(where.length)} mm would be right for that range"
             )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import as_given, at_most
 from gearwear.errors import InputError
 from gearwear.inspection.traces import Traces
 
@@ -38,7 +39,9 @@ def check_ball(radius: float | None, gear: Gear) -> None:
         raise InputError(f"stylus radius {radius:g} mm: a ball of {SMALLEST:g} to {LARGEST:g} mm would be right")
     hollow = gear.tip_roll / gear.base_helix_cosine
     if gear.spec.internal and not radius < hollow:
-        raise InputError(f"stylus radius {radius:g} mm: does not fit the ring's hollow flanks; below {hollow:.3f} mm would")
+        raise InputError(
+            f"stylus radius {as_given(radius)} mm: does not fit the ring's hollow flanks; below {at_most(hollow, 3)} mm would"
+        )
 
 
 def ball_notes(radius: float | None) -> list[str]:

@@ -228,7 +228,7 @@ class LoadedContact(Card):
     def rows(self) -> list[CardRow]:
         stiff = self.stiffness
         said = [
-            ("transmission error", f"{1e3 * self.peak_to_peak:.2f} µm peak to peak, rigid {1e3 * self.rigid_peak_to_peak:.2f} µm; mean lag {1e3 * self.mean_lag:.2f} µm"),
+            ("transmission error", f"{1e3 * self.peak_to_peak:.2f} µm peak to peak, rigid {1e3 * self.rigid_peak_to_peak:.2f} µm; mean lag {1e3 * self.mean_lag:z.2f} µm"),
             ("contact ratio", f"{self.contact_ratio:.3f} under load"),
         ]  # fmt: skip
         if self.total > 0.0:

@@ -20,6 +20,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.given import check_choice, check_number
 from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.pair import base_backlash, base_radius_sum, opposite_hands, same_base_pitch, tight_involute
+from gearwear.design.quantity import apart, as_given, at_least
 from gearwear.design.rack import bisect
 from gearwear.errors import InputError
 
@@ -87,7 +88,7 @@ def working_pressure_angle(pinion: Gear, gear: Gear, centre_distance: float) -> 
     if not abs(bases) < centre_distance < math.inf:
         relation = "sum" if bases > 0.0 else "difference"
         raise InputError(
-            f"centre distance = {centre_distance:g} mm: must be above the {relation} of the base radii, {abs(bases):.4f} mm"
+            f"centre distance = {as_given(centre_distance)} mm: must be above the {relation} of the base radii, {at_least(abs(bases))} mm"
         )
     return math.acos(abs(bases) / centre_distance)
 
@@ -233,7 +234,8 @@ def check_mesh(pinion: Gear, gear: Gear) -> None:
     if pinion.spec.internal and gear.spec.internal:
         raise InputError("two rings do not mesh; one of them inside the other would be an external gear")
     if not same_base_pitch(pinion, gear):
-        raise InputError(f"base pitches {pinion.base_pitch:.6f} and {gear.base_pitch:.6f} mm: gears that mesh have the same")
+        pitches = apart(pinion.base_pitch, gear.base_pitch, digits=6)
+        raise InputError(f"base pitches {' and '.join(pitches)} mm: gears that mesh have the same")
     if not opposite_hands(pinion, gear):
         angles = " and ".join(f"{math.degrees(member.helix_angle):g}°" for member in (pinion, gear))
         right = (

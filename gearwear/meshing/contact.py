@@ -15,7 +15,9 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.given import check_choice, check_number, check_whole
+from gearwear.design.pair import CENTRE_ROUNDING
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.quantity import as_given, at_least, at_most
 from gearwear.design.side import Side
 from gearwear.design.spec import shown
 from gearwear.design.twist import Toothing, refuse
@@ -308,9 +310,14 @@ def check_contact(driver: ToothProfiles, driven: ToothProfiles, centre: float) -
     if mate.spec.internal:
         bases = mate.base_radius - gear.base_radius
         most = float(min(mate.root_radius - driver.radius[-1], driven.radius[0] - gear.root_radius))
-        if not bases < centre < most + 1e-9:
-            raise InputError(f"centre distance {centre:g} mm: inside this ring it must lie between {bases:.4f} and {most:.4f} mm")
+        if not bases < centre <= most + CENTRE_ROUNDING + 1e-9:
+            raise InputError(
+                f"centre distance {as_given(centre)} mm: inside this ring it must lie between {at_least(bases)} and {at_most(most)} mm"
+            )
         return
-    need = max(driver.radius[-1] + mate.root_radius, driven.radius[-1] + gear.root_radius, gear.base_radius + mate.base_radius)
-    if not centre > need - 1e-9:
-        raise InputError(f"centre distance {centre:g} mm: tips meet roots; it must be above {need:.4f} mm")
+    roots = float(max(driver.radius[-1] + mate.root_radius, driven.radius[-1] + gear.root_radius))
+    bases = gear.base_radius + mate.base_radius
+    if not (centre > roots - CENTRE_ROUNDING - 1e-9 and centre > bases):
+        raise InputError(
+            f"centre distance {as_given(centre)} mm: tips meet roots; it must be above {at_least(max(roots, bases))} mm"
+        )

@@ -171,8 +171,8 @@ class ContactResult(Card):
         ratios = ", ".join(f"{ratio:.3f} within {1e3 * tolerance:g} µm" for tolerance, ratio in self.contact_ratio)
         lag = self.transmission_error_min
         return [
-            ("normal backlash", f"{low.value:.4f} … {high.value:.4f} mm, greatest at {math.degrees(high.rotation):.1f}°"),
-            ("greatest lag", f"{-1e3 * lag.value:.2f} µm on the line of action, at {math.degrees(lag.rotation):.1f}°"),
+            ("normal backlash", f"{low.value:z.4f} … {high.value:z.4f} mm, greatest at {math.degrees(high.rotation):.1f}°"),
+            ("greatest lag", f"{-1e3 * lag.value:z.2f} µm on the line of action, at {math.degrees(lag.rotation):.1f}°"),
             ("contact ratio", ratios),
             ("positions", f"{len(self.rotation):,} of the driver"),
         ]

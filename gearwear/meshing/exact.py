@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.pair import tip_clearances
+from gearwear.design.quantity import not_zero
 from gearwear.design.twist import Toothing, refuse
 from gearwear.meshing.backlash import (
     Backlash,
@@ -57,31 +58,33 @@ class ExactMeshing(Card):
     def rows(self) -> list[CardRow]:
         play, path = self.backlash, self.path
         angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
-        ends = f"SAP {path.start_pinion:.4f}, EAP {path.end_pinion:.4f} mm"
+        ends = f"SAP {path.start_pinion:z.4f}, EAP {path.end_pinion:z.4f} mm"
         if path.alone_pinion is not None:
             ends += ", one pair alone {:.4f} … {:.4f} mm".format(*path.alone_pinion)
         elif path.overlap_ratio == 0.0:
             ends += ", no pair ever alone"
         across = (
-            f"normal {play.normal:.4f}, circumferential {play.circumferential:.4f}, radial {play.radial:.4f}"
-            + ("" if play.axial is None else f", axial {play.axial:.4f}")
+            f"normal {play.normal:z.4f}, circumferential {play.circumferential:z.4f}, radial {play.radial:z.4f}"
+            + ("" if play.axial is None else f", axial {play.axial:z.4f}")
             + " mm"
         )
         rows = [
             ("working pressure angle", f"{math.degrees(self.working_pressure_angle):.4f}°"),
             ("operating pitch radii", f"{self.pitch_radius_pinion:.4f} and {self.pitch_radius_gear:.4f} mm"),
             ("backlash", across),
-            ("angular backlash", f"pinion {angles[0]:.4f}°, gear {angles[1]:.4f}°"),
-            ("path of contact", f"{path.length:.4f} mm: approach {path.approach:.4f}, recess {path.recess:.4f}"),
+            ("angular backlash", f"pinion {angles[0]:z.4f}°, gear {angles[1]:z.4f}°"),
+            ("path of contact", f"{path.length:.4f} mm: approach {path.approach:z.4f}, recess {path.recess:z.4f}"),
             ("roll length, pinion", ends),
-            ("roll length, gear", f"SAP {path.start_gear:.4f}, EAP {path.end_gear:.4f} mm"),
-            ("tip clearance", f"pinion {self.tip_clearance_pinion:.4f}, gear {self.tip_clearance_gear:.4f} mm"),
+            ("roll length, gear", f"SAP {path.start_gear:z.4f}, EAP {path.end_gear:z.4f} mm"),
+            ("tip clearance", f"pinion {self.tip_clearance_pinion:z.4f}, gear {self.tip_clearance_gear:z.4f} mm"),
         ]
         for part, other, tip in (("pinion", "gear", self.interference_pinion), ("gear", "pinion", self.interference_gear)):
             if tip.penetration > 0.0:
-                rows.append(("interference", f"the {other}'s tip digs {tip.penetration:.4f} mm into the {part}'s fillet"))
+                rows.append(("interference", f"the {other}'s tip digs {not_zero(tip.penetration)} mm into the {part}'s fillet"))
             elif tip.overrun > 0.0:
-                rows.append(("overrun", f"of the {other}'s tip past the {part}'s interference point {tip.overrun:.4f} mm, clear"))
+                rows.append(
+                    ("overrun", f"of the {other}'s tip past the {part}'s interference point {not_zero(tip.overrun)} mm, clear")
+                )
         return rows
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.quantity import at_most
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
@@ -100,7 +101,7 @@ def linear_contact(
             deviation[~inside[touches]] = -np.inf
             greatest[touches] = np.maximum(greatest[touches], deviation.max(axis=1))
         if not np.isfinite(greatest).all():
-            raise InputError(f"contact ratio {path.contact_ratio:.3f}: the linear model needs at least 1")
+            raise InputError(f"contact ratio {at_most(path.contact_ratio, 3)}: the linear model needs at least 1")
         return greatest
 
     drive, coast = composite(side), composite(side.opposite)

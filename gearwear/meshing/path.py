@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.pair import overlap_ratio, path_ends, reached_roll
+from gearwear.design.quantity import as_given, at_least, at_most
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import operating_pitch_radii, working_pressure_angle
 
@@ -172,7 +173,7 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
     start, end = path_ends(pinion, gear, line)
     if end <= start:
         raise InputError(
-            f"centre distance = {centre_distance:g} mm: the gears do not reach each other, the path of contact is empty"
+            f"centre distance = {as_given(centre_distance)} mm: the gears do not reach each other, the path of contact is empty"
         )
     return PathOfContact(
         line=line,
@@ -257,7 +258,9 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
     roll = np.asarray(roll_pinion, dtype=np.float64)
     least, most = (0.0, line) if orientation > 0 else (max(line, 0.0), math.inf)
     if not ((roll >= least) & (roll <= most)).all():
-        raise InputError(f"length of roll: must lie from {least:.6g} to {most:.4f} mm, got {roll.min():g} … {roll.max():g}")
+        raise InputError(
+            f"length of roll: must lie from {at_least(least) if least else 0} to {at_most(most) if math.isfinite(most) else most} mm, got {as_given(roll.min())} … {as_given(roll.max())}"
+        )
     mate = line - roll  # where one of both is a ring negative, as the ratio of the teeth
     ratio = orientation * gear.teeth / pinion.teeth
     with np.errstate(divide="ignore"):

@@ -9,7 +9,7 @@ from typing import get_args
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.given import check_choice, check_number
-from gearwear.design.quantity import SPACE, number, sentence
+from gearwear.design.quantity import SPACE, not_zero, number, sentence
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import (
     BacklashKind,
@@ -73,7 +73,7 @@ class ShaftMovement(Card):
 
     def headline(self) -> str:
         if self.movement is None or self.centre_distance is None:
-            return f"no centre distance takes up {self.thickness_loss:.4f} mm"
+            return f"no centre distance takes up {self.thickness_loss:z.4f} mm"
         way = "closer" if self.movement < 0.0 else "apart"
         can = "" if self.feasible else ", which cannot be"
         return f"{abs(self.movement):.4f} mm {way}, to {self.centre_distance:.4f} mm{can}"
@@ -81,7 +81,7 @@ class ShaftMovement(Card):
     def rows(self) -> list[CardRow]:
         limit = f"{self.takeable_loss:.4f} mm, to {self.closest_centre_distance:.4f} mm"
         return [
-            ("thickness lost", f"{self.thickness_loss:.4f} mm on every tooth"),
+            ("thickness lost", f"{self.thickness_loss:z.4f} mm on every tooth"),
             ("backlash wanted", f"{self.backlash:.4f} mm ({self.kind})"),
             ("most that can be taken up", limit),
             ("tips bottom", f"at {self.bottoming_centre_distance:.4f} mm"),
@@ -202,11 +202,11 @@ def _obstacles(pinion: Gear, gear: Gear, centre_distance: float) -> tuple[str, .
     for name, member, other, mate in (("pinion", pinion, "gear", gear), ("gear", gear, "pinion", pinion)):
         clearance = centre_distance - mate.tip_radius - member.root_radius
         if clearance < -ROUNDING:
-            obstacles.append(f"the {other}'s tip digs {-clearance:.3f} mm into the {name}'s root circle")
+            obstacles.append(f"the {other}'s tip digs {not_zero(-clearance, 3)} mm into the {name}'s root circle")
             continue
         depth = interference(member, mate, centre_distance).penetration
         if depth > 0.0:
-            obstacles.append(f"the {other}'s tip corner digs {depth:.3f} mm into the {name}'s fillet")
+            obstacles.append(f"the {other}'s tip corner digs {not_zero(depth, 3)} mm into the {name}'s fillet")
     return tuple(obstacles)
 
 

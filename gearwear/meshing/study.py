@@ -14,7 +14,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.given import check_number
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
-from gearwear.design.quantity import SPACE, number, sentence
+from gearwear.design.quantity import SPACE, not_zero, number, sentence
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import Backlash, backlash_from_normal, zero_backlash_centre_distance
@@ -433,19 +433,19 @@ def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
     """What a reader must know of the design at this centre distance."""
     notes = [note for gear in design.gears.values() for note in gear.notes]
     if exact.backlash.normal < -1e-9:
-        notes.append(f"as designed the teeth would overlap by {-exact.backlash.normal:.4f} mm at this centre distance")
+        notes.append(f"as designed the teeth would overlap by {not_zero(-exact.backlash.normal)} mm at this centre distance")
     if exact.path.total_contact_ratio < 1.0:
         notes.append(f"as designed the contact ratio is {exact.path.total_contact_ratio:.3f}: the drive is not continuous")
     for part, other, tip in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
         if tip.penetration > 0.0:
-            notes.append(f"the {other}'s tip digs {tip.penetration:.4f} mm into the {part}'s fillet: interference wear")
+            notes.append(f"the {other}'s tip digs {not_zero(tip.penetration)} mm into the {part}'s fillet: interference wear")
         elif tip.overrun > 0.0:
             root = "undercut root" if design.gears[part].undercut else "root"
             notes.append(
-                f"the {other}'s tip passes the {part}'s interference point by {tip.overrun:.3f} mm of roll; its {root} clears it"
+                f"the {other}'s tip passes the {part}'s interference point by {not_zero(tip.overrun, 3)} mm of roll; its {root} clears it"
             )
         elif tip.below_form > 1e-9:
             notes.append(
-                f"the {other}'s tip reaches {tip.below_form:.3f} mm of roll below the {part}'s form circle: no involute is there"
+                f"the {other}'s tip reaches {not_zero(tip.below_form, 3)} mm of roll below the {part}'s form circle: no involute is there"
             )
     return tuple(notes)

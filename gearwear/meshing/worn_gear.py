@@ -17,7 +17,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.given import check_number
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.quantity import teeth_words
+from gearwear.design.quantity import as_given, at_most, teeth_words
 from gearwear.design.side import Side
 from gearwear.design.spec import shown
 from gearwear.errors import InputError
@@ -109,7 +109,7 @@ def uniform_loss(
     if not (half_angle.sum(axis=1) > 0.0).all():
         land = gear.base_radius * gear.base_helix_cosine * float(nominal.half_angle.sum(axis=1).min())
         raise InputError(
-            f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
+            f"loss {as_given(loss)} mm: must be below {at_most(land)} mm, what the tooth has to lose at its tip before it gets shorter"
         )
     words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
     arc = loss * gear.reference_radius / gear.normal_lever

@@ -113,14 +113,14 @@ class Registration(Card):
     def rows(self) -> list[CardRow]:
         std = 1e3 * np.sqrt(np.diag(self.covariance))
         place = [
-            f"{axis} {value:.3f} mm " + (f"± {error:.2g} µm" if seen else "(not seen)")
+            f"{axis} {value:z.3f} mm " + (f"± {error:.2g} µm" if seen else "(not seen)")
             for axis, value, error, seen in zip("xyz", self.pose.translation, std[:3], self.observed[:3], strict=True)
         ]
         return [
             ("translation", ", ".join(place)),
             ("rotation about the axis", f"± {np.degrees(self.rotation_std):.2g}°"),
             ("rests on", ", ".join(self.datum.surfaces)),
-            ("surfaces too high by", f"{1e3 * self.offset:.1f} µm"),
+            ("surfaces too high by", f"{1e3 * self.offset:z.1f} µm"),
             *(("note", note) for note in self.notes),
         ]
 

@@ -99,7 +99,7 @@ class WearRegion(Card):
         return [
             ("depth", f"{1e3 * self.max_depth:.1f} µm at most, {1e3 * self.mean_depth:.1f} µm on average"),
             ("length" if self.planar else "area", f"{extent} in {counted(self.patches, 'piece')}"),
-            ("centre", f"x {x:.2f}, y {y:.2f}, z {z:.2f} mm"),
+            ("centre", f"x {x:z.2f}, y {y:z.2f}, z {z:z.2f} mm"),
         ]
 
 

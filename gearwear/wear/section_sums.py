@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import at_least, at_most
 from gearwear.design.surface import FLANK, SurfacePoints
 
 STEP = 0.2
@@ -48,7 +49,7 @@ class SectionBand:
         r = gear.thickness_radius if radius is None else radius
         if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
             raise ValueError(
-                f"radius {r} mm is not on the involute: {min(gear.form_radius, gear.flank_end_radius):.4f} … {max(gear.form_radius, gear.flank_end_radius):.4f} mm"
+                f"radius {r} mm is not on the involute: {at_least(min(gear.form_radius, gear.flank_end_radius))} … {at_most(max(gear.form_radius, gear.flank_end_radius))} mm"
             )
         return cls(gear, r, stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64))
 

@@ -127,7 +127,7 @@ class SectionThickness(Card):
             [
                 (
                     f"tooth {tooth.tooth + 1}",
-                    f"mean {tooth.mean:.4f}, least {tooth.least:.4f} at z {tooth.at_z:.1f}, lost {tooth.greatest_loss:.4f} mm",
+                    f"mean {tooth.mean:.4f}, least {tooth.least:.4f} at z {tooth.at_z:.1f}, lost {tooth.greatest_loss:z.4f} mm",
                 )
                 for tooth in self.teeth()
                 if tooth.seen

@@ -157,7 +157,7 @@ def across_words(across: AcrossFace) -> str:
         end, height = ("upper", across.z[-1]) if upper else ("lower", across.z[0])
         said.append(
             f"{_amount(across.lean, across.lean_std)} deeper at the {end} end (z = {height:.1f} mm) than at the other,"
-            f" of {1e3 * across.mean:.1f} µm on average"
+            f" of {1e3 * across.mean:z.1f} µm on average"
         )
     if across.bows:
         where = "at both ends than in the middle" if across.bow > 0.0 else "in the middle than at both ends"

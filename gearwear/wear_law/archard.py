@@ -21,6 +21,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import at_least
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact, sliding
 
@@ -81,7 +82,7 @@ def load_share(gear: Gear, mate: Gear, centre_distance: float, roll: Floats, sha
     if sharing is LoadSharing.LINES:
         return _over_lines(path, roll)
     if path.overlap_ratio == 0.0 and path.contact_ratio >= 2.0:
-        raise InputError(f"contact ratio {path.contact_ratio:.3f}: load sharing is modelled below 2 only")
+        raise InputError(f"contact ratio {at_least(path.contact_ratio, 3)}: load sharing is modelled below 2 only")
     start, end, pitch = path.start_pinion, path.end_pinion, path.base_pitch
     touched = (roll >= start) & (roll <= end)
     if sharing is LoadSharing.NONE:

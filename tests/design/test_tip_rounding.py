@@ -109,7 +109,7 @@ def test_rounded_ends_are_no_flank_and_no_part_of_the_helix():
     assert (locate(point, plain).surface == FLANK).all()
     assert list(locate(point, gear).surface == FLANK) == [False, False, True, False, False]
     assert helix_range(gear).start == pytest.approx(1.5 + min(0.05 * 17.0, 3.0))
-    with pytest.raises(InputError, match=r"leaves no rounding on the end face; below 0\.4 mm it would"):
+    with pytest.raises(InputError, match=r"leaves no rounding on the end face; below 0\.3999 mm it would"):
         gear_solid(gear)
 
 

@@ -71,17 +71,17 @@ OFF_THE_GEAR = [
     ({"control_roll": 20.0, "profile_end": 10.0}, "from 20 to 10 mm of roll is empty"),
     ({"control_roll": 40.0}, "from 40 to 26.3439 mm of roll is empty"),
     ({"profile_end": 1.0}, "from 3.05745 to 1 mm of roll is empty"),
-    ({"control_roll": 40.0, "profile_end": 50.0}, "the involute goes from 3.057 to 26.344 mm"),
+    ({"control_roll": 40.0, "profile_end": 50.0}, "the involute goes from 3.058 to 26.343 mm"),
     ({"helix_between": (20.0, 30.0)}, "helix evaluation from 20 to 30 mm of height: the face goes from 0.000 to 15.000 mm"),
     ({"profile_band": (-2.0, -1.0)}, "band of the profile traces from -2 to -1 mm"),
     ({"pitch_band": (15.0, 16.0)}, "band of the pitch from 15 to 16 mm"),
     ({"helix_band": (27.0, 30.0)}, "band of the helix traces from 27 to 30 mm of roll: the involute goes from"),
     ({"pitch_roll": 27.0}, "the circle of the pitch at 27 mm of roll"),
     ({"sector": 12}, "sector of 12 pitches: 1 to 11 would be right for 12 teeth"),
-    ({"slope_length": 300.0}, "slope stated over 300 mm: at most 233 mm"),
-    ({"profile_cutoff": 1e-9}, "cut-off of the profile's filter, 1e-09 mm: 0.0442 to 22.1 mm"),
+    ({"slope_length": 300.0}, "slope stated over 300 mm: at most 232 mm"),
+    ({"profile_cutoff": 1e-9}, "cut-off of the profile's filter, 1e-09 mm: 0.0443 to 22.1220 mm"),
     ({"profile_cutoff": LONGEST}, "cut-off of the profile's filter, 100000 mm"),
-    ({"helix_cutoff": 0.02}, "cut-off of the helix's filter, 0.02 mm: 0.027 to 13.5 mm"),
+    ({"helix_cutoff": 0.02}, "cut-off of the helix's filter, 0.02 mm: 0.0270 to 13.5000 mm"),
 ]
 
 

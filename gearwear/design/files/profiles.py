@@ -12,6 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.quantity import apart, as_given, at_most
 from gearwear.design.spec import MOST_TEETH
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
@@ -125,15 +126,18 @@ def _check(file: Path, gear: Gear, radius: Floats, z: Floats, half_angle: Floats
         raise InputError(f"{file}: half_angle must be finite and of shape (teeth, 2, {len(z)}, {len(radius)})")
     ends, root = sorted((gear.root_radius, gear.flank_end_radius)), 0 if gear.orientation > 0 else -1
     if len(half_angle) != gear.teeth or max(abs(radius[0] - ends[0]), abs(radius[-1] - ends[1])) > ON_CIRCLE:
+        low, first, last, high = apart(radius[0], ends[0], ends[1], radius[-1])
         raise InputError(
-            f"{file}: is of a gear with {len(half_angle)} teeth from r = {radius[0]:.4f} to {radius[-1]:.4f} mm, the design has {gear.teeth} from "
-            f"{ends[0]:.4f} to {ends[1]:.4f} mm"
+            f"{file}: is of a gear with {len(half_angle)} teeth from r = {low} to {high} mm, the design has {gear.teeth} from "
+            f"{first} to {last} mm"
         )
     if not (z[0] >= -gear.face_width and z[-1] <= 2.0 * gear.face_width):
-        raise InputError(f"{file}: z goes from {z[0]:g} to {z[-1]:g} mm and the face from 0 to {gear.face_width:g} mm")
+        raise InputError(
+            f"{file}: z goes from {as_given(z[0])} to {as_given(z[-1])} mm and the face from 0 to {as_given(gear.face_width)} mm"
+        )
     most = (0.5 + SLACK) * gear.pitch_angle
     if not (np.abs(half_angle).max() <= most and (half_angle[..., root].sum(axis=1) > 0.0).all()):
         raise InputError(
-            f"{file}: half_angle goes from {half_angle.min():.4g} to {half_angle.max():.4g} rad: teeth whole at the root and apart from each other would be right, "
-            f"within ±{most:.4g} rad"
+            f"{file}: half_angle goes from {as_given(half_angle.min())} to {as_given(half_angle.max())} rad: teeth whole at the root and apart from each other would be right, "
+            f"within ±{at_most(most)} rad"
         )

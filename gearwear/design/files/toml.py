@@ -39,6 +39,7 @@ from gearwear.design.limits import Limits
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
+from gearwear.design.quantity import as_given, outside
 from gearwear.design.spec import ADDENDUM, DEDENDUM, GearSpec, check_module, check_teeth, shown
 from gearwear.design.standards import MM_PER_INCH
 from gearwear.design.tolerance import GearTolerance
@@ -386,7 +387,7 @@ def _rim(
         )
     name = "addendum" if key.startswith("tip") else "dedendum"
     raise InputError(
-        f"[{part}] {key} = {diameter:g} mm: {name} = {value:.3g} modules: must lie from {low:g} to {high:g}; check module and teeth too"
+        f"[{part}] {key} = {as_given(diameter)} mm: {name} = {outside(value, low, high)} modules: must lie from {low:g} to {high:g}; check module and teeth too"
     )
 
 

@@ -15,6 +15,7 @@ from gearwear.design.files.toml import read_small
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, section_radii
+from gearwear.design.quantity import at_most
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
@@ -229,7 +230,7 @@ class _Row:
             value = math.radians(value) * gear.base_radius
         most = max(gear.tip_roll, gear.form_roll)
         if not 0.0 <= value <= 1.2 * most:
-            raise self.wrong(f"{name} {self.words[name]}", f"on the involute, L 0 to {most:.3f} mm,")
+            raise self.wrong(f"{name} {self.words[name]}", f"on the involute, L 0 to {at_most(1.2 * most, 3)} mm,")
         return value
 
 

@@ -104,9 +104,9 @@ def write_topography(results: Results, folder: Path) -> list[str]:
     def rows() -> Iterator[tuple[object, ...]]:
         for tooth, side, row, column in np.ndindex(*maps[0].shape):
             deviation, corrected, depth, count = (float(values[tooth, side, row, column]) for values in maps)
-            seen = [f"{value:.3f}" if np.isfinite(value) else "" for value in (deviation, corrected)]
+            seen = [f"{value:z.3f}" if np.isfinite(value) else "" for value in (deviation, corrected)]
             place = (f"{roll[column]:.4f}", f"{radius[column]:.4f}", f"{height[row]:.4f}")
-            yield tooth + 1, str(tuple(Side)[side]), *place, *seen, f"{depth:.3f}", int(count)
+            yield tooth + 1, str(tuple(Side)[side]), *place, *seen, f"{depth:z.3f}", int(count)
 
     write_csv(folder / "topography.csv", head, rows())
     return ["topography.csv"]

@@ -55,8 +55,8 @@ def _write_curves(path: Path, study: PairStudy) -> None:
         contact.driver_radius, contact.driven_radius, strict=True,
     )  # fmt: skip
     rows = (
-        (f"{turn:.4f}", f"{error:.4f}", *(f"{play / by:.6f}" for by in (1.0, operating, reference)), f"{angle:.6f}", pinion_tooth,
-         gear_tooth, f"{z:.3f}", f"{pinion_radius:.4f}", f"{gear_radius:.4f}")
+        (f"{turn:.4f}", f"{error:z.4f}", *(f"{play / by:z.6f}" for by in (1.0, operating, reference)), f"{angle:z.6f}", pinion_tooth,
+         gear_tooth, f"{z:z.3f}", f"{pinion_radius:.4f}", f"{gear_radius:.4f}")
         for turn, error, play, angle, pinion_tooth, gear_tooth, z, pinion_radius, gear_radius in positions
     )  # fmt: skip
     write_csv(path, head, rows)
@@ -69,7 +69,7 @@ def _write_sliding(path: Path, study: PairStudy) -> None:
     rows = sliding_records(study.sliding_rows({**rolls, **{f"{i}": float(roll) for i, roll in enumerate(between)}}))
     rows.sort(key=lambda row: float(row["pinion_roll_mm"]))
     cells = (
-        [f"{value:.6f}" if key != "point" else value if value in rolls else "" for key, value in row.items()] for row in rows
+        [f"{value:z.6f}" if key != "point" else value if value in rolls else "" for key, value in row.items()] for row in rows
     )
     write_csv(path, rows[0], cells)
 
@@ -151,7 +151,7 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | 
     row("specific sliding", "start to end: pinion {} … {}, gear {} … {}".format(*(number(float(v), 2) for v in ends)))
     speeds = "{} … {}".format(*(number(float(v), 2) for v in slid.velocity))
     row("sliding velocity", f"start to end: {speeds} mm/s, pinion at 1 rad/s")
-    row("tip clearance", f"pinion {exact.tip_clearance_pinion:.4f}, gear {exact.tip_clearance_gear:.4f}")
+    row("tip clearance", f"pinion {exact.tip_clearance_pinion:z.4f}, gear {exact.tip_clearance_gear:z.4f}")
 
     said += [("", ""), *((text, "bold") for text in _contact_words(study))]
     lowest = 1e3 * contact.transmission_error_min.value
@@ -162,7 +162,7 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | 
     else:
         at = math.degrees(contact.backlash_max.rotation)
         row("backlash", f"circumferential {number(least, 4)} … {number(most, 4)} mm, greatest at {at:.1f}°")
-    pairs = listed(f"{value:.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio)
+    pairs = listed(f"{value:z.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio)
     row("contact ratio", f"{contact.contact_ratio_on(path):.3f}; pairs {pairs}")
     if loaded is not None:
         said.append((sentence(f"under load: {load_words(loaded)}").rstrip("."), "bold"))

@@ -41,7 +41,7 @@ def write_sections_csv(path: Path, worn: ToothProfiles, heights: Sequence[float]
             a, b = centre + side * nominal, centre + side * present
             depth = 1e3 * gear.base_radius * gear.base_helix_cosine * (nominal - present)
             for *places, lost in np.column_stack([r, r * np.cos(a), r * np.sin(a), r * np.cos(b), r * np.sin(b), depth]):
-                yield f"{z:.4f}", tooth + 1, str(side), *(f"{value:.6f}" for value in places), f"{lost:.3f}"
+                yield f"{z:z.4f}", tooth + 1, str(side), *(f"{value:z.6f}" for value in places), f"{lost:z.3f}"
 
     write_csv(path, head, rows())
 
@@ -69,7 +69,7 @@ def write_thickness_csv(path: Path, thickness: SectionThickness) -> None:
 
     def rows() -> Iterator[tuple[object, ...]]:
         for tooth, section in np.ndindex(*thickness.arc.shape):
-            shown = [f"{value:.6f}" if np.isfinite(value) else "" for value in (column[tooth, section] for column in columns)]
+            shown = [f"{value:z.6f}" if np.isfinite(value) else "" for value in (column[tooth, section] for column in columns)]
             yield tooth + 1, f"{thickness.z[section]:.4f}", f"{thickness.radius:.6f}", f"{thickness.nominal:.6f}", *shown
 
     write_csv(path, head, rows())
