@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from unicodedata import category
 
 if TYPE_CHECKING:
     from gearwear.arrays import Floats
@@ -39,6 +40,18 @@ class NotThisGear(InputError):
     def __reduce__(self) -> tuple[type[NotThisGear], tuple[Floats, bool, str]]:
         """Made anew in another process, which an error's own way would try with the message alone."""
         return type(self), (self.points, self.planar, str(self))
+
+
+def printable(text: str) -> str:
+    """A text on one line and without what moves a cursor or changes colours: words of a damaged file may hold anything.
+
+    >>> printable("SIZE \\x1b[2J4\\n µm")
+    'SIZE \\\\x1b[2J4\\\\n µm'
+    """
+    return "".join(
+        letter.encode("unicode_escape").decode() if category(letter)[0] == "C" or category(letter) in ("Zl", "Zp") else letter
+        for letter in text
+    )
 
 
 def readable(name: object) -> str:

@@ -133,7 +133,8 @@ def _lonely(points: Floats, centre: Floats, size: float) -> Bools:
     half = 1 << 20  # 21 bits per axis; what is farther off shares the outermost cells
     key = np.zeros(len(points), np.int64)
     for axis in range(3):
-        index = np.clip((points[:, axis] - centre[axis]) / size, 1 - half, half - 2)
+        with np.errstate(over="ignore"):  # of cells that are next to nothing: the outermost ones then
+            index = np.clip((points[:, axis] - centre[axis]) / size, 1 - half, half - 2)
         key = key << 21 | (np.floor(index).astype(np.int64) + half)
     cells, counts = np.unique(key, return_counts=True)
     order = np.argsort(counts)

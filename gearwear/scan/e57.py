@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from gearwear.arrays import Floats
+from gearwear.errors import InputError
 from gearwear.memory import check_memory
 from gearwear.scan.contents import Contents
 from gearwear.scan.parsing import MOST_UNPACKED, check_count, not_installed, short_by
-from gearwear.scan.pieces import PIECE, Pieces
+from gearwear.scan.pieces import PIECE, Pieces, join
 
-AXES, INVALID = ("cartesianX", "cartesianY", "cartesianZ"), "cartesianInvalidState"
+FIELDS = {
+    "cartesianInvalidState": ("cartesianX", "cartesianY", "cartesianZ"),
+    "sphericalInvalidState": ("sphericalRange", "sphericalAzimuth", "sphericalElevation"),
+}
+"""Coordinates, the better ones first, by the field that marks which of them are no good."""
 
 
 def read_e57(data: bytes) -> Contents:
@@ -31,32 +37,18 @@ def read_e57(data: bytes) -> Contents:
     Raises
     ------
     InputError
-        If pye57 is missing or the file is damaged.
+        If pye57 is missing, the file is damaged, or it holds fewer points than it says.
     """
-    try:
-        import pye57
-    except ImportError:
-        raise not_installed("E57", "pye57") from None
     with tempfile.TemporaryDirectory() as folder:  # pye57 opens files by name only, and only unpacked ones
         path = Path(folder) / "scan.e57"
         path.write_bytes(data)
-        file = pye57.E57(str(path))
-        try:
-            heads = [file.get_header(i) for i in range(file.scan_count)]
-            promised = [head.point_count for head in heads]
-            check_count("points", sum(promised), 1, MOST_UNPACKED * len(data))
-            # each field of each point becomes a number of 8 bytes, however few bits it has in the file
-            check_memory(points=sum(promised), other=sum(8 * head.point_count * len(head.point_fields) for head in heads))
-            clouds = [file.read_scan(i, ignore_missing_fields=True) for i in range(file.scan_count)]
-        finally:
-            file.close()
-    points = np.concatenate([np.empty((0, 3))] + [np.column_stack([cloud[axis] for axis in AXES]) for cloud in clouds])
-    invalid = sum(promised) - len(points)
-    return Contents(points, rejected={"invalid": invalid} if invalid else {})
+        pieces = e57_pieces(path)
+        check_memory(points=pieces.count)
+        return join(pieces)
 
 
-def e57_pieces(path: Path) -> Pieces | None:
-    """The points of all scans of an E57, piece by piece; None where they are stored as ranges and angles. Parameters and errors as `read_e57`."""
+def e57_pieces(path: Path) -> Pieces:
+    """The points of all scans of an E57, piece by piece; parameters and errors as `read_e57`."""
     try:
         import pye57
     except ImportError:
@@ -64,22 +56,35 @@ def e57_pieces(path: Path) -> Pieces | None:
     file = pye57.E57(str(path))
     try:
         heads = [file.get_header(i) for i in range(file.scan_count)]
-        promised = [head.point_count for head in heads]
-        if any(axis not in head.point_fields for head in heads for axis in AXES):
-            return None
+        promised = sum(head.point_count for head in heads)
+        for head in heads:
+            _marked_by(head.point_fields)
     finally:
         file.close()
-    check_count("points", sum(promised), 1, MOST_UNPACKED * path.stat().st_size)
-    return Pieces(sum(promised), lambda: _pieces(path))
+    check_count("points", promised, 1, MOST_UNPACKED * path.stat().st_size)
+    return Pieces(promised, lambda: _pieces(path))
+
+
+def _marked_by(fields: Sequence[str]) -> str:
+    """The key of `FIELDS` for the coordinates that a scan has."""
+    for invalid, axes in FIELDS.items():
+        if all(axis in fields for axis in axes):
+            return invalid
+    raise InputError(
+        f"a scan of the E57 has neither {' '.join(FIELDS['cartesianInvalidState'])} nor ranges and angles: either would be right"
+    )
 
 
 def _pieces(path: Path) -> Iterator[Contents]:
+    """No array is made for what the header promises: pye57's own `read_scan` leaves it as it was where the file ends before."""
     import pye57
 
     file = pye57.E57(str(path))
     try:
         for head in (file.get_header(i) for i in range(file.scan_count)):
-            wanted = [field for field in (*AXES, INVALID) if field in head.point_fields]
+            invalid = _marked_by(head.point_fields)
+            axes = FIELDS[invalid]
+            wanted = [*axes, *([invalid] if invalid in head.point_fields else [])]
             data, buffers = file.make_buffers(wanted, PIECE)
             reader = head.points.reader(buffers)
             remaining = head.point_count
@@ -88,12 +93,21 @@ def _pieces(path: Path) -> Iterator[Contents]:
                 if not count:
                     raise short_by("points", head.point_count, head.point_count - remaining)
                 remaining -= count
-                points = np.column_stack([data[axis][:count] for axis in AXES])
-                keep = ~data[INVALID][:count].astype(bool) if INVALID in data else np.ones(count, dtype=bool)
+                points = np.column_stack([data[axis][:count] for axis in axes])
+                keep = ~data[invalid][:count].astype(bool) if invalid in data else np.ones(count, dtype=bool)
                 points = points[keep]
+                if invalid == "sphericalInvalidState":
+                    points = _cartesian(points)
                 if head.has_pose():
                     points = file.to_global(points, head.rotation, head.translation)
                 yield Contents(points, rejected={} if keep.all() else {"invalid": int((~keep).sum())})
             reader.close()
     finally:
         file.close()
+
+
+def _cartesian(points: Floats) -> Floats:
+    """x, y and z of ranges, azimuths from x to y, and elevations above them (ASTM E2807)."""
+    distance, azimuth, elevation = points.T
+    level = distance * np.cos(elevation)
+    return np.column_stack([level * np.cos(azimuth), level * np.sin(azimuth), distance * np.sin(elevation)])

@@ -80,7 +80,13 @@ class Chunks:
             raise InputError(f"{self.name}: {error}") from None
         if piece is None:
             raise InputError(f"{self.name}: has changed while it was read: a file that stays as it is would be right")
-        return piece.points * self.scale
+        return in_mm(piece.points, self.scale)
+
+
+def in_mm(points: Floats, scale: float) -> Floats:
+    """Points times mm per unit; what is no number in the file, or too large for one in mm, goes through without a warning."""
+    with np.errstate(all="ignore"):
+        return points * scale
 
 
 def rows_of(path: Path, start: int, count: int, row: np.dtype[np.void], places: Sequence[str]) -> Iterator[Contents]:

@@ -15,7 +15,7 @@ from typing import cast
 
 import numpy as np
 
-from gearwear.errors import InputError, NotEnoughMemory, readable
+from gearwear.errors import InputError, NotEnoughMemory, printable, readable
 from gearwear.memory import allowed, check_memory
 from gearwear.scan.clean import clean
 from gearwear.scan.contents import Contents
@@ -25,6 +25,7 @@ from gearwear.scan.las import read_las
 from gearwear.scan.obj import read_obj, read_off
 from gearwear.scan.parsing import MOST_UNPACKED
 from gearwear.scan.pcd import read_pcd
+from gearwear.scan.pieces import in_mm
 from gearwear.scan.ply import read_ply
 from gearwear.scan.stl import read_stl
 from gearwear.scan.streaming import streamed
@@ -120,12 +121,12 @@ def read_one(path: str | PathLike[str], units: str = "mm", stream: bool | None =
         contents, digest = _contents(Path(path))
         if contents.units is not None and units == "mm":
             units, scale = contents.units, factor(contents.units)
-        points = contents.points if scale == 1.0 else contents.points * scale
+        points = contents.points if scale == 1.0 else in_mm(contents.points, scale)
         cleaned, kind = clean(replace(contents, points=points))
     except NotEnoughMemory as error:
-        raise NotEnoughMemory(f"{path}: {error}") from None
+        raise NotEnoughMemory(f"{path}: {printable(str(error))}") from None
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise InputError(f"{path}: {printable(str(error))}") from None
     return Scan(
         points=np.ascontiguousarray(cleaned.points), normals=cleaned.normals, triangles=cleaned.triangles, kind=cast(ScanKind, kind),
         files=(readable(path),), rejected=cleaned.rejected, view=np.zeros(len(cleaned.points), np.int8), units=units, sha256=(digest,),

@@ -18,7 +18,7 @@ from gearwear.scan.contents import Contents
 from gearwear.scan.e57 import e57_pieces
 from gearwear.scan.las import las_pieces
 from gearwear.scan.pcd import pcd_pieces
-from gearwear.scan.pieces import PIECE, Chunks, Pieces
+from gearwear.scan.pieces import PIECE, Chunks, Pieces, in_mm
 from gearwear.scan.ply import ply_pieces
 from gearwear.scan.text import text_pieces
 from gearwear.scan.types import Scan
@@ -130,7 +130,7 @@ def _surveyed(path: Path, pieces: Pieces, units: str, scale: float) -> Scan:
     picks = _picks(pieces.count)
     start = total = 0
     for piece in pieces.read():
-        points = piece.points * scale
+        points = in_mm(piece.points, scale)
         keep, reasons = _clean(points)
         for reason, count in (piece.rejected | reasons).items():
             rejected[reason] = rejected.get(reason, 0) + count
