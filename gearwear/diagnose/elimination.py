@@ -15,7 +15,7 @@ from gearwear.diagnose.judge import Evidence, judge, with_levels
 from gearwear.diagnose.masks import folds
 from gearwear.diagnose.pattern import Pattern, find_patterns, joined, order_share
 from gearwear.diagnose.rules import rules
-from gearwear.diagnose.search import Problem
+from gearwear.diagnose.search import Problem, forward
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,19 +25,27 @@ class Stood:
     Parameters
     ----------
     model : Model
-        The effects that may be named.
+        The effects that are told.
     evidence : tuple of Evidence
         One per effect.
     fold : (m,) int
         Folds they were judged by.
     patterns : tuple of Pattern
         What no effect explains, known before and found now.
+    faint : frozenset of str
+        Those of the model that are told, and not named.
     """
 
     model: Model
     evidence: tuple[Evidence, ...]
     fold: Ints
     patterns: tuple[Pattern, ...]
+    faint: frozenset[str]
+
+    @property
+    def named(self) -> Model:
+        """The effects that may be named."""
+        return tuple(c for c in self.model if c.name not in self.faint)
 
 
 ORDERS_OF_A_PART = 2
@@ -63,6 +71,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
     pieces = [pattern.field for pattern in known if pattern.order <= ORDERS_OF_A_PART]
     whole = replace(fit, target=fit.target + np.sum(pieces, axis=0)) if pieces else fit
     pieces_of: tuple[Pattern, ...] | None = None
+    dropped = frozenset[str]()
     while True:
         specific = any(c.effect.tooth_specific for c in model)
         fold, apart = (by_block, _apart_by_teeth(fit, model)) if specific else (by_tooth, [None for _ in model])
@@ -73,16 +82,25 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         if worst is None and pieces_of is None:
             cancelled = _without_cancelled(problem, model, evidence, kept)
             if cancelled is not None:
+                dropped |= {c.name for c in model} - {c.name for c in cancelled}
                 model = cancelled
                 continue
             worst = _most_uneven(whole, problem, model)
+        if worst is None and pieces_of is None and dropped:
+            # What one that did not stand took for itself another may explain.
+            heirs = forward(problem, model, dropped)
+            if len(heirs) > len(model):
+                model = heirs
+                continue
         if worst is None:
             patterns = joined(fit.cells.grid, known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise))
             # What the whole model leaves: an effect that is dropped as a piece of that makes it larger, which speaks against no other.
             pieces_of = patterns if pieces_of is None else pieces_of
             worst = _makeshift(fit, problem, model, evidence, kept, pieces_of)
         if worst is None:
-            return Stood(model, tuple(evidence), fold, patterns)
+            faint = frozenset(c.name for c, one in zip(model, evidence, strict=True) if one.faint)
+            return Stood(model, tuple(evidence), fold, patterns, faint)
+        dropped |= {model[worst].name}
         model = model[:worst] + model[worst + 1 :]
 
 
@@ -97,7 +115,7 @@ def _apart_by_teeth(fit: Fit, model: Model) -> list[tuple[float, float] | None]:
 
 def _worst(evidence: list[Evidence], kept: list[bool]) -> int | None:
     """The effect that fails most clearly; None where all stand."""
-    failed = [i for i, e in enumerate(evidence) if not (e.accepted or kept[i])]
+    failed = [i for i, e in enumerate(evidence) if not (e.accepted or e.faint or kept[i])]
     if not failed:
         return None
     return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))

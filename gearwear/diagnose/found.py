@@ -135,7 +135,7 @@ class Loop(Card):
     effects : tuple of FoundEffect
         In the order added.
     form : tuple of FoundEffect
-        Levels that the drawing leaves open and the root as it is: part of the gear as made, no findings. The errors before are with them.
+        Levels that the drawing leaves open, the root as it is, and what is told and not named: no findings. The errors before are with them.
     motion : (6,) float
         Small motion (mm, rad) of the scan that goes with them: deviations of the motion and the effects add.
     rms_before, rms_after, held_out_before, held_out_after : float
@@ -292,8 +292,15 @@ class Loop(Card):
 
 
 def account(
-    fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], fold: Ints, patterns: tuple[Pattern, ...], noise: float
-) -> Loop:  # fmt: skip
+    fit: Fit,
+    problem: Problem,
+    model: Model,
+    evidence: list[Evidence],
+    fold: Ints,
+    patterns: tuple[Pattern, ...],
+    noise: float,
+    faint: frozenset[str] = frozenset(),
+) -> Loop:
     """Order the effects by gain, and follow the error from step to step.
 
     Parameters
@@ -310,9 +317,11 @@ def account(
         What is unexplained.
     noise : float
         Scatter of points, mm.
+    faint : frozenset of str
+        Effects that are told, and not named: part of the gear as it is.
     """
     order = _by_gain(problem, model)
-    order.sort(key=lambda i: model[i].effect.kind is not Kind.FORM)  # what the drawing leaves open first
+    order.sort(key=lambda i: not _unnamed(model[i], faint))  # what the drawing leaves open first
     model, evidence = tuple(model[i] for i in order), [evidence[i] for i in order]
     steps = [fit.errors(model[:n], fold) for n in range(len(model) + 1)]
     which = problem.columns(model)
@@ -353,12 +362,12 @@ def account(
         )  # fmt: skip
     motion = np.zeros(6)
     motion[fit.dictionary.motion] = amplitudes[: len(fit.dictionary.pose)]
-    levels = tuple(one for one in found if one.kind is Kind.FORM)
+    levels = tuple(one for one in found if _unnamed(one.candidate, faint))
     named = tuple(found[len(levels) :])
     told = problem.context.fillets_told and ROOT_FORM not in {candidate.name for candidate in model}
     off = [
         fit.dictionary.take(one.candidate.columns) @ one.amplitudes
-        for one in named
+        for one in found
         if one.kind is Kind.MANUFACTURE
         and not (told and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
     ]
@@ -388,6 +397,11 @@ def account(
         others=(),
         correlations=correlations(known, joint),
     )
+
+
+def _unnamed(candidate: Candidate, faint: frozenset[str]) -> bool:
+    """Whether an effect is no finding: open by the drawing, or faint."""
+    return candidate.effect.kind is Kind.FORM or candidate.name in faint
 
 
 def _or_views(names: tuple[str, ...], fit: Fit, context: Context, candidate: Candidate, amplitudes: Floats) -> tuple[str, ...]:

@@ -40,6 +40,8 @@ class Evidence:
     size : float
         Root mean square of the effect itself, mm, less what a pose takes up.
     accepted : bool
+    faint : bool
+        Whether it is told, but too small or not surely enough to be named; of a freedom, tooth by tooth or of the drawing, never.
     """
 
     statistic: float
@@ -53,6 +55,7 @@ class Evidence:
     contribution: float
     size: float
     accepted: bool
+    faint: bool = False
 
 
 def sandwich(columns: Floats, use: Bools, covariance: CellCovariance, inverse: Floats) -> Floats:
@@ -110,18 +113,19 @@ def judge(
     tried = len(problem.dictionary.candidates)
     p_value = min(1.0, tried * float(fdtrc(q, freedom, max(wald / q, 0.0))))
     left_out = _left_out(folded, at)
-    asked = beyond_chance(left_out.number, tried)
-    # At half of it the left-out are explained no better with the effect than without.
-    holds = left_out.share > max(0.5, asked * left_out.share_error)
-    if by_teeth is not None:  # blocks of every tooth show what some teeth alone have
-        error, number_of_teeth = by_teeth
-        holds &= beyond_chance(number_of_teeth, tried) * error < 1.0
+    error, units = (left_out.share_error / max(left_out.share, 1e-12), left_out.number) if by_teeth is None else by_teeth
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
-    least = max(rules().least_share * noise, rules().least_of_largest * _largest(problem, chosen))
+    least = rules().least_share * noise
     # Once others are gone it may have turned into what it cannot be: a relief that adds metal.
     allowed = candidate.effect.allowed(own, candidate.shape, problem.context)
-    accepted = p_value < rules().significance_of_names and holds and contribution > least and allowed
+    second_order = contribution <= rules().least_of_largest * _largest(problem, chosen)
+    # At half of it the left-out are explained no better with the effect than without.
+    likely = left_out.share > 0.5 and allowed and not second_order
+    told = likely and p_value < rules().significance and beyond_chance(units, 1) * error < 1.0
+    sure = likely and p_value < rules().significance_of_names and beyond_chance(units, tried) * error < 1.0
+    accepted = sure and contribution > least
+    freedom_of_many = candidate.effect.tooth_specific or candidate.effect.kind is Kind.FORM
     return Evidence(
         statistic=wald / q,
         degrees=(q, freedom),
@@ -134,6 +138,7 @@ def judge(
         contribution=contribution,
         size=_size(problem, candidate, own),
         accepted=accepted,
+        faint=told and not accepted and not freedom_of_many,
     )
 
 
@@ -308,7 +313,7 @@ def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     near = [
         c
         for c, gain in zip(others, gains[1:], strict=True)
-        if (gains[0] - gain) / problem.unit < rules().close + penalty(chosen[index])
+        if (gains[0] - gain) / problem.unit < rules().close + penalty(chosen[index], problem.seen)
     ]
     for candidate in [*near, *levels]:
         model = with_levels(problem, (*rest, candidate), [c for c in levels if c is not candidate])

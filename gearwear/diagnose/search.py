@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearwear.arrays import Floats, Ints
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.diagnose.beside import MANY, NOTHING, Beside
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context
@@ -58,8 +58,13 @@ class Problem:
 
     @cached_property
     def prices(self) -> Floats:
-        """`penalty` of all candidates, (n,)."""
-        return np.array([penalty(c) for c in self.dictionary.candidates])
+        """What all candidates must be worth, (n,)."""
+        return np.array([penalty(c, self.seen) for c in self.dictionary.candidates])
+
+    @cached_property
+    def seen(self) -> Bools:
+        """Columns that the cells speak of: an amount for flanks that nobody could use is no freedom."""
+        return np.asarray(np.einsum("tii->i", self.gram.information) > 0.0)
 
     @cached_property
     def _of_name(self) -> dict[str, Ints]:
@@ -113,7 +118,7 @@ class Problem:
 
     def penalty(self, candidate: Candidate) -> float:
         """`penalty`; what is known to be there costs nothing."""
-        return 0.0 if candidate.name in self.always else penalty(candidate)
+        return 0.0 if candidate.name in self.always else penalty(candidate, self.seen)
 
     def keeps(self, chosen: tuple[Candidate, ...]) -> bool:
         """Whether what is known to be there is in."""
@@ -151,9 +156,12 @@ class Problem:
         return True
 
 
-def penalty(candidate: Candidate) -> float:
-    """What a candidate must be worth; shape values count as parameters."""
-    return free_penalty(len(candidate.columns)) + rules().parameter_penalty * rules().shape_price * len(candidate.shape)
+def penalty(candidate: Candidate, seen: Bools | None = None) -> float:
+    """What a candidate must be worth: each of its columns, or those that are `seen`; shape values count as parameters, one of a few choices as no more than
+    what choosing among them gains by chance."""
+    columns = len(candidate.columns) if seen is None else int(seen[candidate.columns].sum())
+    shape = rules().parameter_penalty * rules().shape_price * len(candidate.shape)
+    return free_penalty(columns) + (min(shape, 2.0 * math.log(candidate.choices)) if candidate.choices else shape)
 
 
 def _own_columns(chosen: tuple[Candidate, ...]) -> Ints:
@@ -166,25 +174,26 @@ def free_penalty(columns: int) -> float:
     return rules().effect_penalty + rules().parameter_penalty * columns
 
 
-def forward(problem: Problem, chosen: tuple[Candidate, ...] = ()) -> tuple[Candidate, ...]:
-    """Add the candidate that lowers the cost most until none does.
+def forward(problem: Problem, chosen: tuple[Candidate, ...] = (), never: frozenset[str] = frozenset()) -> tuple[Candidate, ...]:
+    """Add the candidate that lowers the cost most until none does; those named in `never` are not asked.
 
     Effects with a freedom for every tooth come last: early on they soak up whatever goes round the gear.
     """
     for by_tooth in (False, True):
-        while (best := _best_addition(problem, chosen, by_tooth)) is not None:
+        while (best := _best_addition(problem, chosen, by_tooth, never)) is not None:
             chosen = (*chosen, best)
     return chosen
 
 
-def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bool) -> Candidate | None:
+def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bool, never: frozenset[str]) -> Candidate | None:
     """The addition that lowers the cost most, with or without those of a freedom for every tooth; None where none does."""
     worth = problem.gains(chosen) / problem.unit - problem.prices
     for index in map(int, np.argsort(-worth)):
         if worth[index] <= 0.0:
             break
         candidate = problem.dictionary.candidates[index]
-        if (by_tooth or not candidate.effect.tooth_specific) and math.isfinite(problem.cost((*chosen, candidate))):
+        asked = candidate.name not in never and (by_tooth or not candidate.effect.tooth_specific)
+        if asked and math.isfinite(problem.cost((*chosen, candidate))):
             return candidate
     return None
 

@@ -20,6 +20,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import columns_on
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.face_level import FACE_LEVEL
 from gearwear.diagnose.found import Loop
 from gearwear.diagnose.gram import Gram
@@ -143,7 +144,7 @@ def model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     seen, context = cells.seen, loop.context
     motion = [0, 1, 5] if context.planar else list(range(6))
     columns = [np.where(seen[:, None], cells.motion[:, motion], 0.0)]
-    told = (*loop.effects, *(level for level in loop.form if level.name == FACE_LEVEL))
+    told = (*loop.effects, *(one for one in loop.form if one.name == FACE_LEVEL or one.kind is not Kind.FORM))
     fields = np.zeros((len(seen), len(told)))
     points = cells.points.take(seen)
     for i, traced in enumerate(told):

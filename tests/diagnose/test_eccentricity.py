@@ -4,18 +4,19 @@ from gearwear.diagnose.effects.eccentricity import EFFECT
 from tests.diagnose.sample import BORED, ODD, Example, context, feet
 
 
-def example(amplitude, direction, gear=BORED):
+def example(amplitude, direction, gear=BORED, shape=()):
     a, d = 1e-3 * amplitude, np.radians(direction)
-    return Example({"amplitude_um": amplitude, "direction_deg": direction}, (a * np.cos(d), a * np.sin(d)), gear=gear)
+    return Example({"amplitude_um": amplitude, "direction_deg": direction}, (a * np.cos(d), a * np.sin(d)), shape, gear=gear)
 
 
-EXAMPLES = [example(30.0, 50.0), example(20.0, 290.0, ODD)]
+EXAMPLES = [example(30.0, 50.0), example(20.0, 290.0, ODD), example(25.0, 120.0, shape=(0.0,))]
 
 
 def displace(sample, parameters, shape):
     d = np.radians(parameters["direction_deg"])
     shift = 1e-3 * parameters["amplitude_um"] * np.array([np.cos(d), np.sin(d), 0.0])
-    return np.where((sample.surface == 6)[:, None], sample.position, sample.position + shift)
+    stays = np.isin(sample.surface, [6, 3] if shape else [6])  # bore, and tips of a blank that ran true
+    return np.where(stays[:, None], sample.position, sample.position + shift)
 
 
 def test_index_deviation_round_the_gear_is_that_of_the_reference():

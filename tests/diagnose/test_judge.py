@@ -11,7 +11,7 @@ from gearwear.diagnose.columns import CellColumns
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.judge import alternatives, judge
+from gearwear.diagnose.judge import Evidence, alternatives, judge
 from gearwear.diagnose.search import Problem
 
 
@@ -87,8 +87,8 @@ SCATTER = 1e-5
 """mm."""
 
 
-def accepted(amounts: tuple[float, ...], noise: float) -> list[bool]:
-    """Which of some effects of these sizes, mm, far above their own scatter, are accepted at a noise of points."""
+def judged(amounts: tuple[float, ...], noise: float) -> list[Evidence]:
+    """What some effects of these sizes, mm, far above their own scatter, are worth at a noise of points."""
     target = COLUMNS[:, 1 : 1 + len(amounts)] @ np.array(amounts) + SCATTER * np.random.default_rng(1).normal(size=CELLS)
     problem, _ = problem_of({f"e{i}": COLUMNS[:, 1 + i : 2 + i] for i in range(len(amounts))}, target)
     chosen = problem.dictionary.candidates
@@ -96,15 +96,33 @@ def accepted(amounts: tuple[float, ...], noise: float) -> list[bool]:
     folded = Gram.of(problem.dictionary.columns[:, which], target, np.ones(CELLS), np.arange(CELLS) % FOLDS, FOLDS)
     white = White(np.full(CELLS, SCATTER**2), np.ones(CELLS))
     use = np.ones(CELLS, dtype=bool)
-    return [judge(problem, chosen, i, use, white, folded, noise).accepted for i in range(len(chosen))]
+    return [judge(problem, chosen, i, use, white, folded, noise) for i in range(len(chosen))]
 
 
 @pytest.mark.parametrize(("times", "held"), [(0.95, False), (1.05, True)])
 def test_an_effect_is_no_smaller_than_six_hundredths_of_the_noise(times, held):
     """The same effect, as sure in both cases, beside a noise of points that makes it too small or not."""
-    assert accepted((0.001,), 0.001 / (0.06 * times)) == [held]
+    (found,) = judged((0.001,), 0.001 / (0.06 * times))
+    assert (found.accepted, found.faint) == (held, not held)
 
 
 @pytest.mark.parametrize(("times", "held"), [(0.95, False), (1.05, True)])
 def test_an_effect_is_no_smaller_than_a_hundredth_of_the_model(times, held):
-    assert accepted((0.1, 0.001 * times), 1e-6) == [True, held]
+    found = judged((0.1, 0.001 * times), 1e-6)
+    assert [one.accepted for one in found] == [True, held]
+    assert not any(one.faint for one in found)  # a second order of the other is no effect of its own, however small
+
+
+@pytest.mark.parametrize(("error", "told"), [(0.1, True), (0.5, False), (None, False)])
+def test_where_folds_are_blocks_of_every_tooth_the_teeth_tell_what_is_chance(error, told):
+    """Six folds that show 0.4 and 1.6 of an effect in turn: alone they are too few; thirty teeth that differ by a tenth of it are not."""
+    fold = np.arange(CELLS) % 6
+    target = np.where(fold % 2, 0.016, 0.004) * COLUMNS[:, 1] + SCATTER * np.random.default_rng(2).normal(size=CELLS)
+    problem, _ = problem_of({"found": COLUMNS[:, 1:2], "other": COLUMNS[:, 2:3]}, target)
+    chosen = problem.dictionary.candidates[:1]
+    folded = Gram.of(problem.dictionary.columns[:, problem.columns(chosen)], target, np.ones(CELLS), fold, 6)
+    scatter = np.full(CELLS, 0.006**2)
+    by_teeth = None if error is None else (error, 30.0)
+    found = judge(problem, chosen, 0, np.ones(CELLS, dtype=bool), White(scatter, np.ones(CELLS)), folded, 0.001, by_teeth)
+    assert abs(found.shown - 1.0) < 0.1
+    assert found.accepted == told

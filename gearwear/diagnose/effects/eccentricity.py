@@ -8,18 +8,22 @@ from typing import ClassVar
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.surface import BORE, TIP, SurfacePoints
+from gearwear.design.surface import BORE, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.effects.base import Context, Kind, Shape, WaveEffect
 from gearwear.diagnose.parameter import Parameter, angular
+
+TRUE_TIPS = 0.0
+"""Shape value: how far tips run out of what the teeth do; none is the toothing with its tips."""
 
 
 @dataclass(frozen=True)
 class Eccentricity(WaveEffect):
-    """The toothing's axis lies e off the bore's, in the given direction from the design's +x: δ = n · e on the teeth, 0 in the bore.
+    """The toothing's axis lies e off the bore's, in the given direction from the design's +x: δ = n · e on the teeth, 0 in the bore. Tips run out with the
+    teeth where the blank did; they run true where the teeth were cut off its axis.
 
     Notes
     -----
-    Without a bore in the design and in the scan it is part of the pose and not named. Runout F_r is 2 e.
+    Without bore and tips that run true it is part of the pose and not named. Runout F_r is 2 e.
     """
 
     name: ClassVar[str] = "eccentricity"
@@ -31,17 +35,20 @@ class Eccentricity(WaveEffect):
     group: ClassVar[str] = "G4"
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("amplitude_um", signed=False), angular("direction_deg"))
     turns: ClassVar[float] = -1.0
-    phrase: ClassVar[str] = "a gear mounted {amplitude_um} off its axis towards {direction_deg}"
+    phrase: ClassVar[str] = "teeth whose axis lies {amplitude_um} off the blank's towards {direction_deg}"
 
     def applies(self, context: Context) -> bool:
         return BORE in context.surfaces
+
+    def shapes(self, context: Context) -> list[Shape]:
+        return [(), (TRUE_TIPS,)] if TIP in context.surfaces else [()]
 
     def largest(self, context: Context) -> float:
         return 0.5 * context.gear.transverse_module
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        teeth = (points.surface <= TIP)[:, None]
-        return np.where(teeth, points.normal[:, :2], 0.0)
+        last = ROOT if shape else TIP
+        return np.where((points.surface <= last)[:, None], points.normal[:, :2], 0.0)
 
 
 EFFECT = Eccentricity()

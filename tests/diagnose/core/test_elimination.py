@@ -26,7 +26,7 @@ def stood(true, *blocks, seed=1, unit=1.0):
     sheets = [(toy, field if field.ndim == 5 else field[..., None]) for toy, field in blocks]
     fit = fit_of(grid(), deviation, sheets, NOISE, COUNT, turns=True)
     found = eliminate(fit, fit.problem(unit, None), fit.dictionary.candidates, NOISE)
-    return {candidate.name for candidate in found.model}, [pattern.order for pattern in found.patterns]
+    return {candidate.name for candidate in found.named}, [pattern.order for pattern in found.patterns]
 
 
 # What fails its own evidence.
@@ -51,14 +51,26 @@ def test_what_some_teeth_alone_have_falls_beside_what_each_has_of_its_own_too():
     assert stood(index + 0.001 * U * ZETA, *toys)[0] == {"shared", "own"}  # as much, on all teeth
 
 
-def test_an_effect_too_small_for_the_scan_falls_though_it_is_significant():
-    """A hundredth of the noise of a point is below what a scan may name, however many points there are."""
+def test_an_effect_too_small_for_the_scan_is_not_named_though_it_is_told():
+    """A hundredth of the noise of a point is below what a scan may name, however many points there are; the gear has it all the same."""
     small = 0.01 * NOISE * U / np.sqrt(np.mean(U**2))
     scatter = 1e-4 * NOISE * np.random.default_rng(1).normal(size=U.shape)
-    for factor, stands in ((1.0, 0), (20.0, 1)):
+    for factor, named in ((1.0, 0), (20.0, 1)):
         fit = fit_of(grid(), factor * small + scatter, [(Toy("small"), U[..., None])], NOISE, 1e8)
         found = eliminate(fit, fit.problem(1.0, None), fit.dictionary.candidates, NOISE)
-        assert len(found.model) == stands
+        assert len(found.model) == 1
+        assert len(found.named) == named
+
+
+def test_what_is_too_small_to_be_named_makes_no_other_uneven():
+    """A lead of both sides, and a bulge over it: without the lead the bulge is larger at one end than at the other."""
+    bulge, lead = 1.0 - ZETA**2, 0.1 * NOISE * ZETA
+    scatter = 1e-4 * NOISE * np.random.default_rng(2).normal(size=U.shape)
+    toys = [(Toy("bulge"), bulge[..., None]), (Toy("lead"), ZETA[..., None])]
+    fit = fit_of(grid(), 0.22 * NOISE * bulge + lead + scatter, toys, NOISE, 1e8)
+    found = eliminate(fit, fit.problem(1.0, None), fit.dictionary.candidates, NOISE)
+    assert {c.name for c in found.named} == {"bulge"}
+    assert found.faint == {"lead"}
 
 
 def test_what_left_out_teeth_do_not_confirm_falls():
