@@ -415,7 +415,10 @@ class _Scan:
         loss = law @ fitted.amplitudes[-law.shape[1] :]
         by_tooth = self.shares(loss[self.rows])
         alone = self.robust(self.columns(searched), by_tooth, first=fitted.weight)
-        searched = self._searched(searched, loss_by_tooth(self.fit.cells, loss, self.fit.dictionary.first.cuts), alone.weight)
+        beside = self._searched(searched, loss_by_tooth(self.fit.cells, loss, self.fit.dictionary.first.cuts), alone.weight)
+        if set(_columns_of(beside)) != set(_columns_of(searched)):  # what stood in for the shares would hide what they gain
+            fitted = self._alike(beside, loss, worn, fitted.weight)
+        searched = beside
         alone = self.robust(self.columns(searched), by_tooth, first=alone.weight)
         last = slice(len(alone.amplitudes) - by_tooth.count, None)
         share = alone.amplitudes[last]
@@ -432,6 +435,12 @@ class _Scan:
             paid = price + rules().parameter_penalty * more + self._named(searched)
             losses.append(_Loss(alone.square / self.problem.unit + paid, loss, uneven))
         return losses
+
+    def _alike(self, model: Model, loss: Floats, worn: frozenset[Side], first: Floats) -> Robust:
+        """The fit of a model with as much of a loss (m,) on all flanks of each side; `first` as in `robust_fit`."""
+        side, rows = self.fit.cells.points.side[self.rows], self.rows
+        law = np.column_stack([np.where(side == int(one), loss[rows], 0.0) for one in Side if one in worn])
+        return self.robust(np.hstack([self.columns(model), law]), losses=law.shape[1], first=first)
 
     def _differ_more(self, left: Floats, weight: Floats, loss: Floats, side: Side) -> bool:
         """`differ_more` of the flanks of a side in the shape of a loss (m,), in what effects leave (m,), against those of the other side, who wore it not."""

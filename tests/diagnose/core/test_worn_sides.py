@@ -16,8 +16,9 @@ from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.face_width import EFFECT as FACE_WIDTH
+from gearwear.diagnose.effects.thickness_variation import EFFECT as THICKNESS_VARIATION
 from gearwear.diagnose.fit import Fit
-from gearwear.diagnose.flank_columns import loss_by_tooth
+from gearwear.diagnose.flank_columns import loss_by_tooth, wear_columns
 from gearwear.diagnose.found import _made_on, form_of_all
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.masks import not_stray
@@ -263,6 +264,31 @@ def test_the_share_of_a_flank_is_the_loss_on_that_flank_and_nothing_elsewhere():
     flanks = [(tooth, side) for tooth in range(PINION.teeth) if tooth != 4 for side in (-1, 1)]
     expected = [np.where((points.tooth == tooth) & (points.side == side), loss, 0.0) for tooth, side in flanks]
     np.testing.assert_array_equal(columns, np.column_stack(expected))
+
+
+AMOUNTS = np.sin(np.arange(12) ** 2)
+
+
+@pytest.mark.parametrize(
+    ("factors", "effects", "uneven"),
+    [
+        (1.0 + 0.2 * AMOUNTS, (), True),
+        ((), (Effect("thickness_variation", {"thickness_um": tuple((5.0 * (AMOUNTS - AMOUNTS.mean())).tolist())}),), False),
+    ],
+    ids=["worn more and less", "thick and thin, and worn alike"],
+)
+def test_an_amount_for_every_tooth_does_not_hide_that_teeth_lost_more_and_less(factors, effects, uneven):
+    """Thickness that varies takes half of that off both flanks of a tooth: beside the shares it is not needed, and what they gain is counted without it."""
+    cells = binned((SlidingWear(25.0, 1, tuple(factors), "archard"),), effects)
+    context = make_context(cells, np.eye(3), False)
+    target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
+    dictionary = build_dictionary(cells, (THICKNESS_VARIATION,), context)
+    white = CellCovariance(cells.grid, noise(cells) ** 2 / np.maximum(cells.count, 1.0), 1e-6, 0.3, 0.3)
+    fit = Fit(cells, target, dictionary, cells.seen, white)
+    model = dictionary.candidates[:1]
+    scan = _Scan.of(fit, fit.problem(1.0, context, frozenset()), model, noise(cells), cells.seen)
+    losses = scan._losses_beside(model, LEFT, *wear_columns(cells, context, LEFT))
+    assert [one.uneven for one in losses] == [uneven, uneven]
 
 
 WAY = np.linspace(1.6, 24.8, 24) - 13.0
