@@ -19,21 +19,11 @@ from gearwear.placing.cells import CellGrid, Cells
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """One effect at one shape, and where its columns stand.
-
-    Parameters
-    ----------
-    effect : Effect
-    shape : tuple of float
-    columns : (k,) int
-    choices : int
-        How many shapes there are where none is refined, as a root that follows the flank or does not; 0 where a value of the shape is.
-    """
+    """One effect at one shape, and where its columns stand."""
 
     effect: Effect
     shape: Shape
     columns: Ints
-    choices: int = 0
 
     @property
     def name(self) -> str:
@@ -125,8 +115,7 @@ def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context
         for effect in effects:
             if not effect.applies(context):
                 continue
-            shapes = effect.shapes(context)
-            for shape in shapes:
+            for shape in effect.shapes(context):
                 # Each column of a freedom for every tooth is zero on nearly all cells: in full they are held on a stretch at a time.
                 block: Floats | CellColumns = (
                     CellColumns.of_pieces(columns_on(*piece, effect, shape, context, cells.grid) for piece in pieces)
@@ -134,8 +123,7 @@ def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context
                     else columns_on(*whole, effect, shape, context, cells.grid)
                 )
                 count = block.count if isinstance(block, CellColumns) else block.shape[1]
-                choices = 0 if effect.bracket(shape, context) else len(shapes)
-                candidates.append(Candidate(effect, shape, np.arange(start, start + count), choices))
+                candidates.append(Candidate(effect, shape, np.arange(start, start + count)))
                 start += count
                 yield block
 

@@ -15,7 +15,7 @@ from gearwear.diagnose.judge import Evidence, judge, with_levels
 from gearwear.diagnose.masks import folds
 from gearwear.diagnose.pattern import Pattern, find_patterns, joined, order_share
 from gearwear.diagnose.rules import rules
-from gearwear.diagnose.search import Problem, forward
+from gearwear.diagnose.search import Problem
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,6 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
     pieces = [pattern.field for pattern in known if pattern.order <= ORDERS_OF_A_PART]
     whole = replace(fit, target=fit.target + np.sum(pieces, axis=0)) if pieces else fit
     pieces_of: tuple[Pattern, ...] | None = None
-    dropped = frozenset[str]()
     while True:
         specific = any(c.effect.tooth_specific for c in model)
         fold, apart = (by_block, _apart_by_teeth(fit, model)) if specific else (by_tooth, [None for _ in model])
@@ -82,16 +81,9 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         if worst is None and pieces_of is None:
             cancelled = _without_cancelled(problem, model, evidence, kept)
             if cancelled is not None:
-                dropped |= {c.name for c in model} - {c.name for c in cancelled}
                 model = cancelled
                 continue
             worst = _most_uneven(whole, problem, model)
-        if worst is None and pieces_of is None and dropped:
-            # What one that did not stand took for itself another may explain.
-            heirs = forward(problem, model, dropped)
-            if len(heirs) > len(model):
-                model = heirs
-                continue
         if worst is None:
             patterns = joined(fit.cells.grid, known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise))
             # What the whole model leaves: an effect that is dropped as a piece of that makes it larger, which speaks against no other.
@@ -100,7 +92,6 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         if worst is None:
             faint = frozenset(c.name for c, one in zip(model, evidence, strict=True) if one.faint)
             return Stood(model, tuple(evidence), fold, patterns, faint)
-        dropped |= {model[worst].name}
         model = model[:worst] + model[worst + 1 :]
 
 

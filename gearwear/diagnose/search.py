@@ -157,11 +157,9 @@ class Problem:
 
 
 def penalty(candidate: Candidate, seen: Bools | None = None) -> float:
-    """What a candidate must be worth: each of its columns, or those that are `seen`; shape values count as parameters, one of a few choices as no more than
-    what choosing among them gains by chance."""
+    """What a candidate must be worth: each of its columns, or those that are `seen`; shape values count as parameters."""
     columns = len(candidate.columns) if seen is None else int(seen[candidate.columns].sum())
-    shape = rules().parameter_penalty * rules().shape_price * len(candidate.shape)
-    return free_penalty(columns) + (min(shape, 2.0 * math.log(candidate.choices)) if candidate.choices else shape)
+    return free_penalty(columns) + rules().parameter_penalty * rules().shape_price * len(candidate.shape)
 
 
 def _own_columns(chosen: tuple[Candidate, ...]) -> Ints:
@@ -174,26 +172,25 @@ def free_penalty(columns: int) -> float:
     return rules().effect_penalty + rules().parameter_penalty * columns
 
 
-def forward(problem: Problem, chosen: tuple[Candidate, ...] = (), never: frozenset[str] = frozenset()) -> tuple[Candidate, ...]:
-    """Add the candidate that lowers the cost most until none does; those named in `never` are not asked.
+def forward(problem: Problem, chosen: tuple[Candidate, ...] = ()) -> tuple[Candidate, ...]:
+    """Add the candidate that lowers the cost most until none does.
 
     Effects with a freedom for every tooth come last: early on they soak up whatever goes round the gear.
     """
     for by_tooth in (False, True):
-        while (best := _best_addition(problem, chosen, by_tooth, never)) is not None:
+        while (best := _best_addition(problem, chosen, by_tooth)) is not None:
             chosen = (*chosen, best)
     return chosen
 
 
-def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bool, never: frozenset[str]) -> Candidate | None:
+def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bool) -> Candidate | None:
     """The addition that lowers the cost most, with or without those of a freedom for every tooth; None where none does."""
     worth = problem.gains(chosen) / problem.unit - problem.prices
     for index in map(int, np.argsort(-worth)):
         if worth[index] <= 0.0:
             break
         candidate = problem.dictionary.candidates[index]
-        asked = candidate.name not in never and (by_tooth or not candidate.effect.tooth_specific)
-        if asked and math.isfinite(problem.cost((*chosen, candidate))):
+        if (by_tooth or not candidate.effect.tooth_specific) and math.isfinite(problem.cost((*chosen, candidate))):
             return candidate
     return None
 

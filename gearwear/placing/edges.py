@@ -82,7 +82,7 @@ def at_either_end(low: Bools) -> tuple[Bools, Bools]:
 def _from_first(low: Bools) -> Bools:
     quarter = _quarter(len(low))
     run: Bools = np.asarray(np.logical_and.accumulate(low, axis=0))
-    run = run & ~run[quarter - 1]
+    run = run & ~run[max(quarter - 1, 1)]  # of few rows the first alone may be an edge
     run[quarter:] = False
     return run
 

@@ -47,3 +47,13 @@ def test_a_face_of_which_a_part_was_seen_says_what_it_says():
     field[:, :, 12:] = np.nan
     fall = typical_fall(field)
     assert np.nanmin(fall) > -1e-12 and np.isnan(fall[:, 12:]).all()
+
+
+@pytest.mark.parametrize("rows", range(3, 9))
+def test_of_few_rows_the_first_and_the_last_may_be_edges_and_no_more(rows):
+    low = np.zeros(rows, dtype=bool)
+    low[[0, -1]] = True
+    from_low, from_high = at_either_end(low)
+    np.testing.assert_array_equal(from_low | from_high, low)
+    low[1] = True  # further in than a quarter of the face
+    assert not at_either_end(low)[0].any()

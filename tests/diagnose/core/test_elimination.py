@@ -164,15 +164,6 @@ def test_an_effect_of_another_size_on_one_half_falls(half):
     assert stood(0.015 * wave, (Toy("wave"), wave)) == ({"wave"}, [])
 
 
-def test_what_one_that_falls_took_for_itself_another_may_explain():
-    """Two that cancel but for a small rest stand in for one, which the search did not choose beside them."""
-    toys = [(Toy("up"), ZETA + 0.05 * U), (Toy("down"), ZETA), (Toy("right"), U)]
-    deviation = 0.003 * U + NOISE / np.sqrt(COUNT) * np.random.default_rng(4).normal(size=U.shape)
-    fit = fit_of(grid(), deviation, [(toy, field[..., None]) for toy, field in toys], NOISE, COUNT, turns=True)
-    found = eliminate(fit, fit.problem(1.0, None), fit.dictionary.candidates[:2], NOISE)
-    assert {c.name for c in found.named} == {"right"}
-
-
 def test_an_effect_that_has_its_own_size_on_each_side_is_not_uneven():
     wave = np.cos(3.0 * ANGLE)
     both = np.stack([np.where(AT.left, wave, 0.0), np.where(AT.left, 0.0, wave)], axis=-1)

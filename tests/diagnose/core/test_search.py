@@ -1,6 +1,5 @@
 """The search on toy dictionaries whose best set of effects is known from trying all of them."""
 
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -153,15 +152,6 @@ def test_parameters_and_shape_values_have_a_price():
     )
     one, two, shaped, _ = (penalty(c) for c in wide.dictionary.candidates)
     assert 0.0 < one < two < shaped + 10.0 and shaped > one
-
-
-def test_one_of_two_shapes_costs_no_more_than_choosing_between_them_gains():
-    """The greater of two gains of noise exceeds one by less than 2 ln 2, as the least of two p-values is twice too small."""
-    wide = problem(np.ones((5, 1)), [(Toy("one"), np.eye(5)[:, :1])], np.ones(5))
-    (plain,) = wide.dictionary.candidates
-    either = replace(plain, shape=(1.0,), choices=2)
-    assert abs(penalty(either) - penalty(plain) - 2.0 * np.log(2.0)) < 1e-12
-    assert penalty(either) < penalty(replace(plain, shape=(1.0,)))  # a value that is refined
 
 
 def test_an_amount_that_no_cell_speaks_of_is_free():
