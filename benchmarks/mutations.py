@@ -57,6 +57,9 @@ MUTATIONS = [
         ("design/pair.py", "CENTRE_ROUNDING = 0.5e-3", "CENTRE_ROUNDING = 0.6e-3", "design/test_limits_in_messages.py"),
         ("design/quantity.py", "_rounded(math.ceil", "_rounded(round", "design/test_limits_in_messages.py"),
         ("design/quantity.py", "_rounded(math.floor", "_rounded(round", "design/test_limits_in_messages.py"),
+        # dimensions over pins of a scaled gear
+        ("inspection/dimensions.py", "across * abs(pins.roll)", "2.0 * abs(pins.roll)", "inspection/test_budget.py"),
+        ("inspection/dimensions.py", "/ math.sin(pins.centre_angle)\n\n\ndef at", "\n\n\ndef at", "inspection/test_budget.py"),
         # a mate narrower than the face
         ("diagnose/active_face.py", "misfit[fitted[:, -1] <= 0.0] = math.inf", "pass", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "> sure or not", "> -100.0 or not", "diagnose/core/test_active_face.py"),

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.inspection.dimensions import Dimensions
+from gearwear.design.gear import Gear
+from gearwear.inspection.dimensions import Dimensions, pin_growth
 from gearwear.inspection.estimate import Estimate
 
 MOTIONS = 6
@@ -58,27 +59,33 @@ def with_scale(covariance: Floats | None, scale_std: float) -> Floats | None:
     return joined
 
 
-def scaled_dimensions(dimensions: Dimensions, scale_std: float) -> Dimensions:
+def scaled_dimensions(dimensions: Dimensions, gear: Gear, scale_std: float) -> Dimensions:
     """Dimensions whose uncertainty holds that of the scale.
 
     Parameters
     ----------
     dimensions : Dimensions
+    gear : Gear
+        The nominal gear.
     scale_std : float
         Relative.
 
     Notes
     -----
-    A span is a length: it changes by s W. A dimension over pins changes by a little less than s M; s M is taken. The thickness has it from
-    its flanks: ``2 s r tan α_t``.
+    All of them follow the flanks, which a scale moves by s L along the transverse base tangent; gauges keep their size. A span touches at its
+    two ends and changes by s W. Pins of diameter D touch at ``L = r_b tan α_M ∓ (D / 2) cos β_b``, are pushed out by ``s L / sin α_M`` each, and
+    change the dimension by twice that, with an odd number of teeth times cos(90° / z): s M would be right if they grew too. The thickness has
+    it from its flanks: ``2 s r tan α_t``.
     """
     if scale_std == 0.0:
         return dimensions
 
-    def wider(estimate: Estimate) -> Estimate:
-        return replace(estimate, standard=np.hypot(estimate.standard, scale_std * np.abs(estimate.value)))
+    def wider(estimate: Estimate, by: Floats | float) -> Estimate:
+        return replace(estimate, standard=np.hypot(estimate.standard, scale_std * by))
 
-    return replace(dimensions, span_lengths=wider(dimensions.span_lengths), pin_lengths=wider(dimensions.pin_lengths))
+    spans, over = dimensions.span_lengths, dimensions.pin_lengths
+    scaled = replace(dimensions, span_lengths=wider(spans, np.abs(spans.value)))
+    return scaled if dimensions.pins is None else replace(scaled, pin_lengths=wider(over, pin_growth(gear, dimensions.pins)))
 
 
 def budget_line(quantity: str, estimate: Estimate, causes: int) -> BudgetLine:

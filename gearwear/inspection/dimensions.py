@@ -357,6 +357,14 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     return Estimate.plain(distance + gear.orientation * pins.diameter, share * np.hypot(across[first], across[second]))
 
 
+def pin_growth(gear: Gear, pins: Pins) -> float:
+    """By how much the dimension over pins grows, mm, for a gear that is larger by a share of 1, to first order; its pins stay as they are."""
+    across = (
+        pins.length - gear.orientation * pins.diameter
+    ) / pins.centre_radius  # 2, with an odd number of teeth 2 cos(90° / z)
+    return across * abs(pins.roll) / math.sin(pins.centre_angle)
+
+
 def at_spaces(values: Floats) -> tuple[Floats, Floats]:
     """Values (teeth, 2, …) of the two flanks of each space: left of the tooth before it, right of the tooth behind it."""
     return values[:, Side.LEFT.index], np.roll(values[:, Side.RIGHT.index], -1, axis=0)

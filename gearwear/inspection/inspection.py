@@ -233,7 +233,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     return Inspection(
         gear=gear, settings=replace(scan.settings, noise=asked), noise=scan.samples.noise, points=len(scan.samples), stray=scan.samples.stray,
         coverage=scan.coverage, profile=profile, helix=helix, pitch=pitch, runout=balls,
-        dimensions=scaled_dimensions(dimensions, scale_std), topography=topography(scan.samples, 16, 24),
+        dimensions=scaled_dimensions(dimensions, gear, scale_std), topography=topography(scan.samples, 16, 24),
         laboratory=laboratory, findings=worst_findings(judge, profile, helix, pitch, balls), notes=(*notes, FOOTNOTE),
         foremost=(*scan.notes, *felt_by, *(limit.text for limit in limits if limit.foremost)),
     )  # fmt: skip

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearwear.design import Gear, GearSpec, parse_design
+from gearwear.design.surface import locate
 from gearwear.inspection import Settings, inspect
 from gearwear.inspection.budget import with_scale
 from gearwear.inspection.ranges import profile_range
@@ -43,8 +44,6 @@ def test_a_scale_is_a_profile_slope_of_s_times_the_range(found):
 def test_the_gear_scaled_itself_shows_what_the_budget_says():
     """The same by moving every point of the gear: a scan that is 100 ppm too large."""
     points = flanks(GEAR, 60, 12)
-    from gearwear.design.surface import locate
-
     middle = np.array([0.0, 0.0, 0.5 * GEAR.face_width])
     grown = locate((points.position - middle) * (1.0 + S) + middle, GEAR, workers=1)
     slope = inspect(grown, GEAR, Settings(noise=1e-6)).profile.slope.value
@@ -81,11 +80,30 @@ def test_a_scale_makes_totals_unsure_as_type_b_and_forms_not():
         assert form.scale < 0.02 * total.scale
 
 
-def test_spans_and_pins_grow_with_the_scale(found):
-    for name in ("span_lengths", "pin_lengths"):
-        plain, scaled = (getattr(found[s].dimensions, name) for s in (0.0, S))
-        extra = np.sqrt(scaled.standard**2 - plain.standard**2)
-        np.testing.assert_allclose(extra, S * plain.value, rtol=1e-6)
+def test_spans_grow_with_the_scale(found):
+    plain, scaled = (found[s].dimensions.span_lengths for s in (0.0, S))
+    np.testing.assert_allclose(np.sqrt(scaled.standard**2 - plain.standard**2), S * plain.value, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "spec",
+    [
+        pytest.param(GearSpec("gear", 20, 3.0, 20.0), marks=pytest.mark.long),
+        GearSpec("gear", 13, 3.0, 20.0, profile_shift=0.3),
+        pytest.param(GearSpec("gear", 21, 3.0, 20.0, helix_angle=math.radians(20.0)), marks=pytest.mark.long),
+        GearSpec("gear", 40, 2.0, 20.0, internal=True),
+    ],
+    ids=["even", "odd", "helical", "ring"],
+)
+def test_dimensions_are_as_unsure_as_those_of_the_gear_scaled_itself_change(spec):
+    """Every point moved: a scan that is 100 ppm too large; flanks are followed to first order, to 1e-3 of it."""
+    gear = Gear.from_spec(spec)
+    points, middle = flanks(gear, 40, 8), np.array([0.0, 0.0, 0.5 * gear.face_width])
+    grown = locate((points.position - middle) * (1.0 + S) + middle, gear, workers=1)
+    told, moved = (inspect(scan, gear, Settings(noise=1e-6, scale_std=s)).dimensions for scan, s in ((points, S), (grown, 0.0)))
+    for name in ("pin_lengths", "thickness", *([] if spec.internal else ["span_lengths"])):
+        before, after = (getattr(one, name) for one in (told, moved))  # the scatter of points adds some 1e-4 of it
+        assert np.mean(before.standard) == pytest.approx(abs(np.mean(after.value - before.value)), rel=5e-3)
 
 
 def test_without_a_scale_nothing_changes(found):
