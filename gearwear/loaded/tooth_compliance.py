@@ -64,7 +64,7 @@ class ToothCompliance:
         return np.asarray(spline(np.clip(roll, self.roll[0], self.roll[-1])), dtype=np.float64)
 
 
-@lru_cache(maxsize=8)  # a run of wear after the other asks for the same two gears
+@lru_cache(maxsize=32)  # a run of wear after the other asks for the same two gears
 def tooth_compliance(
     gear: Gear, material: Material, bore_radius: float | None = None, fine: Fineness = FINE, coarse: Fineness = COARSE
 ) -> ToothCompliance:
@@ -172,23 +172,26 @@ def section_stiffness(gear: Gear, material: Material, section: MeshQuad) -> tupl
     """
     from scipy.sparse import coo_matrix
     from skfem import Basis, ElementQuad2, ElementVector
-    from skfem.models.elasticity import lame_parameters, linear_elasticity
+    from skfem.models.elasticity import lame_parameters
 
     first, shear = lame_parameters(material.elastic_modulus, material.poisson)
-    if gear.twist == 0.0:
-        basis = Basis(section, ElementVector(ElementQuad2()), intorder=4)
-        return basis, linear_elasticity(first, shear).assemble(basis)
-    basis = Basis(section, ElementVector(ElementQuad2(), 3), intorder=4)
-    x, y = np.asarray(basis.global_coordinates())
+    components = 2 if gear.twist == 0.0 else 3
+    basis = Basis(section, ElementVector(ElementQuad2(), components), intorder=4)
     # Twice the energy is the sum of squares of these, for each shape function and point: so its matrix is their products.
-    roots = np.empty((len(basis.dx), basis.Nbfun, basis.dx.shape[1], 7))
+    roots = np.empty((len(basis.dx), basis.Nbfun, basis.dx.shape[1], 4 if components == 2 else 7))
     for number, (shape, *_) in enumerate(basis.basis):
-        u, (by_x, by_y) = np.asarray(shape), np.swapaxes(shape.grad, 0, 1)
-        by_z = gear.twist * (np.stack([-u[1], u[0], np.zeros_like(u[2])]) - x * by_y + y * by_x)
-        stretch = np.stack([by_x[0], by_y[1], by_z[2]])
-        slant = np.stack([by_y[0] + by_x[1], by_z[0] + by_x[2], by_z[1] + by_y[2]])
-        terms = [math.sqrt(first) * stretch.sum(axis=0)[None], math.sqrt(2.0 * shear) * stretch, math.sqrt(shear) * slant]
-        roots[:, number] = np.moveaxis(np.concatenate(terms) * np.sqrt(basis.dx), 0, -1)
+        by_x, by_y = np.swapaxes(shape.grad, 0, 1)
+        stretch, slant = [by_x[0], by_y[1]], [by_y[0] + by_x[1]]
+        if components == 3:
+            u, (x, y) = np.asarray(shape), np.asarray(basis.global_coordinates())
+            by_z = gear.twist * (np.stack([-u[1], u[0], np.zeros_like(u[2])]) - x * by_y + y * by_x)
+            stretch, slant = [*stretch, by_z[2]], [*slant, by_z[0] + by_x[2], by_z[1] + by_y[2]]
+        terms = [
+            math.sqrt(first) * sum(stretch),
+            *(math.sqrt(2.0 * shear) * one for one in stretch),
+            *(math.sqrt(shear) * one for one in slant),
+        ]
+        roots[:, number] = np.stack([term * np.sqrt(basis.dx) for term in terms], axis=-1)
     flat = roots.reshape(*roots.shape[:2], -1)
     values = flat @ flat.swapaxes(1, 2)
     dofs = basis.element_dofs.T
