@@ -76,7 +76,7 @@ class Runs:
         k N up to which is run, mm²/N.
     stated : float
         Gap that the design states, mm; + opens towards z = b on the worn flanks.
-    kept : dict of Conditions to (MOMENTS, slices, n) float
+    kept : dict of Conditions, nothing stated, to (MOMENTS, slices, n) float
         Depth on all places of the map by the runs that were made, mm: `of` adds to it. A copy with other depths on the map may share it, one
         with another pair must not.
     """
@@ -107,6 +107,7 @@ class Runs:
 
     def of(self, conditions: Conditions) -> Floats:
         """(MOMENTS, m) depth at the places of the map, mm."""
+        conditions = replace(conditions, stated=0.0)  # a pair runs alike whether its gap was stated or not
         if conditions not in self.kept:
             depth = self._run(conditions)
             over = over_common_face(self.map, self.mate, depth.shape[1])

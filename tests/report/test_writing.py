@@ -70,6 +70,7 @@ values = st.recursive(
     | st.floats().map(np.float64)
     | st.floats(width=32).map(np.float32),
     lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner) | st.tuples(inner, inner),
+    max_leaves=20,
 )
 
 
