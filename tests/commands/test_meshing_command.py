@@ -35,6 +35,12 @@ def pictures(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) ->
 
 
 @pytest.fixture
+def few_positions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For what does not hang on how finely the turn is divided."""
+    monkeypatch.setattr("gearwear.meshing.study.POSITIONS", 8)
+
+
+@pytest.fixture
 def drawn() -> None:
     """What a test asks for that looks at pictures."""
 
@@ -226,6 +232,7 @@ def test_one_worn_tooth_cannot_be_taken_up(design):
 
 
 @pytest.mark.usefixtures("drawn")
+@pytest.mark.usefixtures("few_positions")
 def test_python_gives_what_the_command_writes(design):
     command = study(design, "--loss", 0.05, "--teeth", "1,2", "--part", "gear", "--centre-distance", 114.6)
     python = gw.study_meshing(gw.read_design(design), loss=0.05, teeth=[1, 2], part="gear", centre_distance=114.6)
@@ -317,6 +324,7 @@ def test_from_a_contact_ratio_of_two_on_no_pair_is_alone(tmp_path):
     assert [row["point"] for row in exact["sliding"]] == ["A", "C", "E"]
 
 
+@pytest.mark.usefixtures("few_positions")
 def test_the_hunting_cycle_meets_every_pair(design, tmp_path):
     text = PAPER.replace("teeth = 24", "teeth = 25").replace("centre_distance = 114.3", "centre_distance = 117.6")
     (tmp_path / "odd.toml").write_text(text)

@@ -19,6 +19,12 @@ LOSS = {"pinion": 0.03, "gear": 0.05}
 Z = np.array([2.5, 7.5, 12.5])
 
 
+@pytest.fixture(autouse=True)
+def few_positions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All here is alike from position to position, or compared position by position."""
+    monkeypatch.setattr("gearwear.meshing.study.POSITIONS", 5)
+
+
 @pytest.fixture(scope="module")
 def pair() -> Design:
     return gw.read_design(gw.example())
