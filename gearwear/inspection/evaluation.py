@@ -63,6 +63,8 @@ class Evaluation:
         Least-squares line: δ in the middle of the range, and its rise over the range (towards tip or +z).
     k : KFit or None
         How the traces lie in their K bands; None where there are none.
+    line_shared : (teeth, 2, 2, m) float or None
+        What one standard deviation of each cause that bins have in common does to both numbers of the line, mm.
     """
 
     along: str
@@ -79,6 +81,7 @@ class Evaluation:
     standard: Floats
     line: Floats
     k: KFit | None
+    line_shared: Floats | None = None
 
     def line_at(self, station: Floats) -> Floats:
         """The least-squares lines at `station` (n,), mm; (teeth, 2, n)."""
@@ -130,6 +133,7 @@ def evaluate(
     share = np.zeros(shape)
     filtered, standard = np.full((2, *shape, len(station)), np.nan)
     line = np.full((*shape, 2), np.nan)
+    line_shared = None if shared is None else np.full((*shape, 2, shared.shape[-1]), np.nan)
     widest = where.cutoff
     shift, excess = np.full(shape, np.nan), Estimate.empty(shape)
     rng = np.random.default_rng(0)
@@ -170,7 +174,10 @@ def evaluate(
             station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error,
             None if moved is None else moved[counted], usual[side, known][counted], through[side],
         )  # fmt: skip
-        line[tooth, side] = deviations.pop("middle").value, deviations["slope"].value
+        ends = deviations.pop("middle"), deviations["slope"]
+        line[tooth, side] = [end.value for end in ends]
+        if line_shared is not None:
+            line_shared[tooth, side] = [end.shared for end in ends]
         factor = (hand * tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length
         slope = deviations["slope"]
         turned = None if slope.shared is None else factor * slope.shared
@@ -192,6 +199,7 @@ def evaluate(
         standard=standard,
         line=line,
         k=None if bands == (None, None) else KFit(bands, shift, excess),
+        line_shared=line_shared,
     )
 
 

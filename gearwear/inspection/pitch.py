@@ -166,13 +166,18 @@ def line_positions(profile: Evaluation, roll: float, common: CommonForm | None, 
 
     Notes
     -----
-    In the middle of an evenly sampled range a line is surer than its slope by sqrt(12), and the two errors are independent.
+    In the middle of an evenly sampled range a line is surer than its slope by sqrt(12), and the two errors are independent. What levelling
+    adds to the profiles (`additive.levelling_errors`), their last causes behind those of the registration, moves all of a flank's line:
+    of a scan that shows half of the face it is as much as the scatter.
     """
     where = profile.range
     t = (roll - where.middle) / where.length
     value = profile.line_at(np.array([roll]))[..., 0]
     slope = profile.slope.own * where.length / where.stated
     scatter = slope * math.sqrt(1.0 / 12.0 + t**2)
+    if profile.line_shared is not None:
+        own = profile.line_shared[..., 0 if shared is None else shared.shape[-1] :]
+        scatter = np.hypot(scatter, np.linalg.norm(own[..., 0, :] + t * own[..., 1, :], axis=-1))
     if abs(t) > 0.5 + CARRIED:
         value = np.full_like(value, np.nan)
     for side in (0, 1):
