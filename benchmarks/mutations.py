@@ -60,6 +60,8 @@ MUTATIONS = [
         # dimensions over pins of a scaled gear
         ("inspection/dimensions.py", "across * abs(pins.roll)", "2.0 * abs(pins.roll)", "inspection/test_budget.py"),
         ("inspection/dimensions.py", "/ math.sin(pins.centre_angle)\n\n\ndef at", "\n\n\ndef at", "inspection/test_budget.py"),
+        ("inspection/pitch.py", "own[..., 0, :] + t", "0.0 * own[..., 0, :] + t", "inspection/test_line_positions.py"),
+        ("fleet/batch.py", "first[held].gear_id != row.gear_id", "first[held] is row", "fleet/test_same_scan.py"),
         # a mate narrower than the face
         ("diagnose/active_face.py", "misfit[fitted[:, -1] <= 0.0] = math.inf", "pass", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "> sure or not", "> -100.0 or not", "diagnose/core/test_active_face.py"),

@@ -172,6 +172,11 @@ def _summary(tally: Tally, store: Store, manifest: Path) -> list[tuple[str, str]
     if tally.dropped:
         more = f"! {tally.dropped} scans of the earlier list of this name are not in it, and are left out of trend and gauge; a list with a name of its own would keep them"
         lines += wrapped(more, WIDTH, "yellow", 2)
+    for one, other, scan in tally.same[:SHOWN]:
+        said = f"! lines {one.line} and {other.line} of the list, gears {one.gear_id} and {other.gear_id}, are the same scan: {scan} holds what that of line {one.line} does"
+        lines += wrapped(said, WIDTH, "yellow", 2)
+    if len(tally.same) > SHOWN:
+        lines.append((f"! and {len(tally.same) - SHOWN} more rows that list the scan of another gear", "yellow"))
     states = store.states()
     wrong = [(row, states[row.key]) for row in store.listed() if states.get(row.key) in (State.REFUSED, State.FAILED)]
     for row, state in wrong[:SHOWN]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import gearwear
 from gearwear.design.files.toml import read_limits
-from gearwear.fleet.keys import Options, contents_of, key_of
+from gearwear.fleet.keys import ABSENT, Options, contents_of, key_of
 from gearwear.fleet.manifest import ManifestRow, read_manifest
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.store import Store
@@ -35,6 +35,8 @@ class Tally:
         Of those, how many have an outcome.
     dropped : int
         Scans of an earlier list of the same name that are not in the manifest: trend and gauge do not see them any more.
+    same : tuple of (ManifestRow, ManifestRow, str)
+        Rows of different gears that list one scan, and its name in the second: files of the same contents.
     """
 
     total: int
@@ -44,6 +46,7 @@ class Tally:
     to_do: int = 0
     ended: int = 0
     dropped: int = 0
+    same: tuple[tuple[ManifestRow, ManifestRow, str], ...] = ()
 
     def after(self, outcome: Outcome) -> Tally:
         """With one more."""
@@ -95,7 +98,14 @@ def run_batch(manifest: Path, store: Store, crew: Crew, options: Options, memory
             for key, row, held, state in zip(keys, rows, contents, before, strict=True)
             if state in (None, State.FAILED)
         ]
-        tally = Tally(len(rows), before.count(State.DONE), before.count(State.REFUSED), to_do=len(jobs), dropped=dropped)
+        tally = Tally(
+            len(rows),
+            before.count(State.DONE),
+            before.count(State.REFUSED),
+            to_do=len(jobs),
+            dropped=dropped,
+            same=tuple(_same_scans(rows, contents)),
+        )
         tell(tally, None, None)
         if jobs:
             row_of = {job.key: job.row for job in jobs}
@@ -105,6 +115,19 @@ def run_batch(manifest: Path, store: Store, crew: Crew, options: Options, memory
                     tally = tally.after(outcome)
                     tell(tally, row_of[outcome.key], outcome)
     return tally
+
+
+def _same_scans(rows: Sequence[ManifestRow], contents: Sequence[Sequence[str]]) -> Iterator[tuple[ManifestRow, ManifestRow, str]]:
+    """Rows whose scan an earlier row of another gear has listed, each with the first that did; of two such scans of a row the first."""
+    first: dict[str, ManifestRow] = {}
+    for row, digests in zip(rows, contents, strict=True):
+        scans = dict(zip(digests[1 : 1 + len(row.scans)], row.scans, strict=True))
+        scans.pop(ABSENT, None)
+        held = next((one for one in scans if one in first), None)
+        if held is not None and first[held].gear_id != row.gear_id:
+            yield first[held], row, scans[held]
+        for one in scans:
+            first.setdefault(one, row)
 
 
 def _scan_of(cells: Mapping[str, str]) -> tuple[str, ...]:
