@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg.blas import dtrsm
 
 from gearwear.arrays import Floats, Ints
 
@@ -91,13 +92,21 @@ class Beside:
             length = np.sqrt(self.own[which])
             scaled = self.information[which[:, None], which] / (length[:, None] * length)
             way = _to_unit(scaled) / length[:, None]
-            self._known[at] = _and_nothing(self.information[:, which] @ way), self.moment[which] @ way
+            sums = np.zeros((len(self.own) + 1, way.shape[1]))  # the last row is `NOTHING`'s
+            np.matmul(self.information[:, which], way, out=sums[:-1])
+            self._known[at] = sums, self.moment[which] @ way
         return self._known[at]
 
     @cached_property
-    def _rows(self) -> tuple[Floats, Floats, Floats]:
-        """Information, moment and own squares with a row of zeros behind them, which is `NOTHING`'s."""
-        return _and_nothing(self.information), _and_nothing(self.moment), _and_nothing(self.own)
+    def _of_each(self) -> tuple[Floats, Floats]:
+        """Moment and own square of each column, and behind them 0, which is `NOTHING`'s."""
+        return np.append(self.moment, 0.0), np.append(self.own, 0.0)
+
+    def _across(self, at: Ints) -> Floats:
+        """Sums of the columns at some places (…) with all, (…, q); 0 of `NOTHING`."""
+        across = self.information[at]
+        across[at == NOTHING] = 0.0
+        return across
 
     def solve(self, which: Ints) -> tuple[Floats, Floats]:
         """Amplitudes and inverse information of the fit on columns `which` beside the others."""
@@ -115,35 +124,32 @@ class Beside:
 
     def _scaled(self, which: Ints) -> tuple[Floats, Floats, Floats]:
         """The information of columns `which` in the lengths of the whole columns, with the ridge; these lengths, and the moment."""
-        at, (information, moments, squares) = self.place[which], self._rows
-        root = np.sqrt(squares[at])
+        at, (moments, squares) = self.place[which], self._of_each
+        root, there = np.sqrt(squares[at]), at != NOTHING
         root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
-        scaled = information[at[:, None], at] * (at != NOTHING) / (root[:, None] * root)
+        scaled = self.information[at[:, None], at] * (there[:, None] & there) / (root[:, None] * root)
         return scaled + RIDGE * np.eye(len(which)), root, moments[at]
 
     def beside(self, which: Ints) -> Beside:
         """The same beside columns `which` too."""
         scaled, root, aim = self._scaled(which)
-        across = self._rows[0][self.place[which]] / root[:, None]
-        spanned = np.linalg.solve(scaled, np.column_stack([across, aim / root]))
-        moment = self.moment - across.T @ spanned[:, -1]
-        square = float(self.square - (aim / root) @ spanned[:, -1])
-        return replace(self, information=self.information - across.T @ spanned[:, :-1], moment=moment, square=square)
+        information, moment, square = spanned(scaled, self._across(self.place[which]) / root[:, None], aim / root)
+        return replace(self, information=self.information - information, moment=self.moment - moment, square=self.square - square)
 
     def tried(self, bases: Ints) -> tuple[Floats, Floats]:
         """Of each of some fits on columns `bases` (n, k), some of them `NOTHING`, the weighted sum of squares that it leaves, (n,), and the fall of it
         when each of the candidates is added, (n, candidates)."""
-        count, bases, (information, moments, own_squares) = len(bases), self.place[bases], self._rows
+        count, bases, (moments, own_squares) = len(bases), self.place[bases], self._of_each
         root = np.sqrt(own_squares[bases])
         root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
-        across, aim = information[bases] / root[..., None], moments[bases] / root
+        across, aim = self._across(bases) / root[..., None], moments[bases] / root
         scaled = np.take_along_axis(across, np.maximum(bases, 0)[:, None, :], axis=2) / root[:, None, :]
         scaled *= (bases != NOTHING)[:, None, :]
         scaled += RIDGE * np.eye(bases.shape[1])
         inverse = np.linalg.inv(scaled)
-        spanned, amplitudes = inverse @ across, (inverse @ aim[..., None])[..., 0]
+        drawn, amplitudes = inverse @ across, (inverse @ aim[..., None])[..., 0]
         rest = self.moment - (amplitudes[:, None] @ across)[:, 0]
-        left = np.diag(self.information) - (spanned * across).sum(axis=1)
+        left = np.diag(self.information) - (drawn * across).sum(axis=1)
         good = left >= SPANNED * self.own  # a column that the base already spans has nothing left: no gain from rounding
         gains = np.zeros((count, len(self.candidates)))
         for block in self._blocks:
@@ -166,19 +172,39 @@ class Beside:
                 np.divide(rest[:, which[:, 0]] ** 2, left[:, which[:, 0]] * (1.0 + RIDGE), out=value, where=fine)
             elif size == 2:
                 one, other = which.T
-                mixed = self.information[one, other] - (spanned[:, :, one] * across[:, :, other]).sum(axis=1)
+                mixed = self.information[one, other] - (drawn[:, :, one] * across[:, :, other]).sum(axis=1)
                 a, b = left[:, one] * (1.0 + RIDGE), left[:, other] * (1.0 + RIDGE)
                 by = rest[:, one] ** 2 * b - 2.0 * rest[:, one] * rest[:, other] * mixed + rest[:, other] ** 2 * a
                 np.divide(by, a * b - mixed**2, out=value, where=fine)
             else:
                 part = self.information[which[:, :, None], which[:, None, :]] - np.einsum(
-                    "nbms,nbmt->nmst", spanned[:, :, which], across[:, :, which]
+                    "nbms,nbmt->nmst", drawn[:, :, which], across[:, :, which]
                 )
                 part = part[fine] + RIDGE * left[:, which][fine][:, :, None] * np.eye(size)
                 beyond = rest[:, which][fine]
                 value[fine] = (beyond * np.linalg.solve(part, beyond[..., None])[..., 0]).sum(axis=1)
             gains[:, block.at] = value
         return self.square - (amplitudes * aim).sum(axis=1), gains
+
+
+def spanned(scaled: Floats, across: Floats, aim: Floats) -> tuple[Floats, Floats, float]:
+    """What some columns span of others: of the sums of these with each other (q, q), of their moment (q,) and of the square.
+
+    Parameters
+    ----------
+    scaled : (k, k) float
+        Information of the columns, positive definite.
+    across, aim : (k, q), (k,) float
+        Their sums with the others, and their moment.
+
+    Notes
+    -----
+    By Cholesky's factor L, with Y = L⁻¹ `across`, it is Yᵀ Y: a product of a matrix with itself takes half the work of one of two.
+    """
+    lower, right = np.linalg.cholesky(scaled), np.column_stack([across, aim])
+    # Transposed, both lie in memory as LAPACK has them.
+    y = dtrsm(1.0, lower.T, right.T, side=1, overwrite_b=1).T
+    return y[:, :-1].T @ y[:, :-1], y[:, :-1].T @ y[:, -1], float(y[:, -1] @ y[:, -1])
 
 
 def _to_unit(information: Floats) -> Floats:
@@ -192,8 +218,3 @@ def _to_unit(information: Floats) -> Floats:
     value, vector = np.linalg.eigh(information)
     left = value > SPANNED
     return np.asarray(vector[:, left] / np.sqrt(value[left]), dtype=np.float64)
-
-
-def _and_nothing(values: Floats) -> Floats:
-    """Values (p, …) with a row of zeros behind them."""
-    return np.concatenate([values, np.zeros((1, *values.shape[1:]))])

@@ -87,19 +87,20 @@ class Gram:
         from scipy.optimize import nnls
 
         a, b = self._sums(None)
-        alone, inverse = self.solve(free)
         seen = np.diag(a)[bounded] > 0.0  # what nobody sees gets no amplitude
         amounts, bounded = np.zeros(len(bounded)), bounded[seen]
         if not len(bounded):  # `nnls` ends the process where there is nothing to fit
-            return np.concatenate([alone, amounts])
-        spanned = inverse @ a[np.ix_(free, bounded)]
-        left = a[np.ix_(bounded, bounded)] - a[np.ix_(bounded, free)] @ spanned
+            return np.concatenate([self.amplitudes(free), amounts])
+        scaled, size, moment = self._scaled(free, None)
+        both = np.linalg.solve(scaled, np.column_stack([a[np.ix_(free, bounded)], moment]) / size[:, None]) / size[:, None]
+        drawn, alone = both[:, :-1], both[:, -1]
+        left = a[np.ix_(bounded, bounded)] - a[np.ix_(bounded, free)] @ drawn
         scale = np.sqrt(np.diag(a)[bounded])
         value, vector = np.linalg.eigh(left / np.outer(scale, scale) + RIDGE * np.eye(len(bounded)))
         root = np.sqrt(np.maximum(value, RIDGE))
         aim = vector.T @ ((b[bounded] - a[np.ix_(bounded, free)] @ alone) / scale)
         amounts[seen] = nnls(root[:, None] * vector.T, aim / root, maxiter=100 * len(bounded))[0] / scale
-        return np.concatenate([alone - spanned @ amounts[seen], amounts])
+        return np.concatenate([alone - drawn @ amounts[seen], amounts])
 
     def residual_square(self, which: Ints) -> float:
         """Weighted sum of squares that the fit on columns `which` leaves."""

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from gearwear.diagnose.beside import RIDGE, spanned
 from gearwear.diagnose.gram import Gram
 from tests.diagnose.core.toy import left
 
@@ -128,7 +129,7 @@ def test_bounded_columns_of_which_nobody_sees_any_leave_the_fit_on_the_others():
     columns[:, 2:] = 0.0
     gram = Gram.of(columns, target, weight, fold, 5)
     free, bounded = np.arange(2), np.arange(2, columns.shape[1])
-    np.testing.assert_array_equal(gram.solve_non_negative(free, bounded), [*gram.solve(free)[0], *np.zeros(len(bounded))])
+    np.testing.assert_array_equal(gram.solve_non_negative(free, bounded), [*gram.amplitudes(free), *np.zeros(len(bounded))])
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -173,3 +174,34 @@ def test_columns_that_nobody_sees_take_no_part_in_what_is_held_beside_others(see
     gains = few.gains(np.array([0, 1]), [np.array([2]), np.array([3])])
     np.testing.assert_allclose(beside.tried(np.array([[5, place[1]]]))[1][0], gains, rtol=1e-6)
     np.testing.assert_allclose(beside.beside(np.array([5, place[1]])).tried(np.zeros((1, 0), int))[1][0], gains, rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_what_columns_span_of_others_is_their_part_in_the_plane_of_the_columns(seed):
+    """An orthonormal basis of the columns, by QR, gives it too. One of them is there twice, and the others lie all but in their plane."""
+    random = np.random.default_rng(seed)
+    columns = random.normal(size=(80, 5))
+    columns /= np.linalg.norm(columns, axis=0)
+    others = np.hstack([random.normal(size=(80, 3)), columns[:, :2] + 1e-5 * random.normal(size=(80, 2))])
+    target = random.normal(size=80)
+    frame = np.linalg.qr(columns)[0]
+    twice = columns[:, [0, 1, 2, 3, 4, 2]]
+    for basis in (columns, twice):
+        scaled = basis.T @ basis + RIDGE * np.eye(basis.shape[1])
+        information, moment, square = spanned(scaled, basis.T @ others, basis.T @ target)
+        np.testing.assert_allclose(information, (frame.T @ others).T @ (frame.T @ others), atol=1e-6)
+        np.testing.assert_allclose(moment, (frame.T @ others).T @ (frame.T @ target), atol=1e-6)
+        assert square == pytest.approx(float(np.sum((frame.T @ target) ** 2)), abs=1e-6)
+        assert np.linalg.eigvalsh(others.T @ others - information).min() > -1e-12  # a rest is no less than nothing
+
+
+def test_bounded_amplitudes_beside_many_free_columns_are_those_of_dense_least_squares():
+    """All below 0 but where the target was made: then the bounds do not bind, and it is plain least squares."""
+    random = np.random.default_rng(3)
+    columns, weight = random.normal(size=(400, 60)) * 10.0 ** random.uniform(-3, 3, 60), random.uniform(0.5, 2.0, 400)
+    target = columns @ (random.uniform(1.0, 2.0, 60) / np.linalg.norm(columns, axis=0)) + 1e-3 * random.normal(size=400)
+    gram = Gram.of(columns, target, weight, np.zeros(400, int), 1)
+    x, y = dense(columns, target, weight)
+    size = np.linalg.norm(x, axis=0)
+    found = gram.solve_non_negative(np.arange(55), np.arange(55, 60))
+    np.testing.assert_allclose(found * size, np.linalg.lstsq(x / size, y, rcond=None)[0], rtol=1e-6)
