@@ -110,6 +110,7 @@ MUTATIONS = [
         ("diagnose/worn_sides.py", "fitted = self._alike(beside, loss, worn, fitted.weight)", "pass", "diagnose/core/test_worn_sides.py"),
         ("placing/edges.py", "run[max(quarter - 1, 1)]", "run[quarter - 1]", "placing/test_edges.py"),
         ("diagnose/told_by_wear.py", "max(1.0, cost / max(number, 1.0))", "1.0", "diagnose/test_told_by_wear.py"),
+        ("diagnose/loop.py", "or_of_the_form(fit, problem, kept) if context.worn else {}", "{}", "diagnose/core/test_of_the_part.py"),
         ("diagnose/worn_sides.py", "if uneven and len(worn) == 1:", "if False:", "diagnose/core/test_of_the_part.py"),
         ("diagnose/found.py", "np.abs(one.value) > NORMAL_95 * np.asarray(one.std)", "np.abs(one.value) > 0.0", "diagnose/core/test_smoothing.py"),
         ("diagnose/found.py", "if one.role is Role.SIZE}", "}", "diagnose/core/test_smoothing.py"),

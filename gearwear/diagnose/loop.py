@@ -27,7 +27,7 @@ from gearwear.diagnose.elimination import eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
 from gearwear.diagnose.masks import not_stray, sound_cells, whole_flanks, worn_mask
-from gearwear.diagnose.of_the_part import left_in_the_part, of_the_form
+from gearwear.diagnose.of_the_part import left_in_the_part, of_the_form, or_of_the_form
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
@@ -254,7 +254,10 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
     # Where a form of all teeth is left that is larger than the noise, it decides between effects that are nearly alike, and not they themselves.
     form = any(pattern.is_form(noise) for pattern in stood.patterns)
     kept = left_in_the_part(problem, stood.model, form)
-    kept, instead = of_the_form(fit, problem, kept) if form else (kept, {})
+    if form:
+        kept, instead = of_the_form(fit, problem, kept)
+    else:
+        instead = or_of_the_form(fit, problem, kept) if context.worn else {}
     kept = told_by_wear(fit, problem, kept)
     if kept != stood.model:
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)

@@ -37,12 +37,13 @@ def left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:
     return model
 
 
-def of_the_form(fit: Fit, problem: Problem, model: Model) -> tuple[Model, Mapping[str, frozenset[str]]]:
+def of_the_form(fit: Fit, problem: Problem, model: Model, form: bool = True) -> tuple[Model, Mapping[str, frozenset[str]]]:
     """The model without what the scanner seems to have done and a form of all teeth may be as well; and of the effects that came in instead, by
     name, what they cannot be told from.
 
-    Where flanks have a form that no effect explains, any profile may be theirs. What explains less than half as much beside a free profile of each
+    Where flanks have a form that no effect explains, `form`, any profile may be theirs. What explains less than half as much beside a free profile of each
     side, and levels of the other surfaces, is not told from it. What the maker does stands in its place, or the form that is left has no name.
+    Without `form` what scanners do often is not asked about.
     """
     cells = fit.cells
     wide = fit.dictionary.with_columns(on_each_side(cells, any_profile(cells)))
@@ -58,7 +59,8 @@ def of_the_form(fit: Fit, problem: Problem, model: Model) -> tuple[Model, Mappin
 
     def by_scanner(candidate: Candidate) -> bool:
         """Whether the scanner may not have done it at all: edges every scan rounds."""
-        return candidate.effect.kind is Kind.MEASUREMENT and candidate.name != EDGE_ROUNDING
+        known = candidate.effect
+        return known.kind is Kind.MEASUREMENT and candidate.name != EDGE_ROUNDING and (form or not known.usual)
 
     taken_out = {c.name for i, c in enumerate(model) if by_scanner(c) and not told([c], model[:i] + model[i + 1 :])[0]}
     if not taken_out:
@@ -68,3 +70,12 @@ def of_the_form(fit: Fit, problem: Problem, model: Model) -> tuple[Model, Mappin
     made = exchange(replace(problem, dictionary=replace(problem.dictionary, candidates=running)), rest)
     before = {c.name for c in model}
     return made, {c.name: frozenset(taken_out) for c in made if c.name not in before and c.effect.kind is not Kind.FORM}
+
+
+def or_of_the_form(fit: Fit, problem: Problem, model: Model) -> Mapping[str, frozenset[str]]:
+    """What of the maker's may be there in place of what the scanner seems to have done, where flanks of a side are left out as worn, by name of that.
+
+    Of the other side alone what turns both sides' flanks against each other looks as a form does that it was cut with.
+    """
+    made, instead = of_the_form(fit, problem, model, form=False)
+    return {name: frozenset(instead) for name in {c.name for c in model} - {c.name for c in made}}

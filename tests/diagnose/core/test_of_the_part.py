@@ -131,3 +131,16 @@ def test_a_side_is_worn_whatever_the_other_was_cut_to(form):
     worn = binned((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),))
     loop = explained(with_form(worn, -0.025 * form(along(worn)), frozenset({Side.RIGHT})))
     assert (loop.worn_sides, loop.others) == (LEFT, ())
+
+
+def test_a_laser_beside_the_axis_may_be_a_slope_of_the_sound_side_where_the_other_is_worn():
+    """It turns flanks of both sides against each other, which no slope does; those of one side alone it turns as a slope and another level of theirs."""
+    beside = (Effect("axis_offset_lateral", {"offset_um": 60.0}),)
+    both, right = (
+        explained(binned((), beside)),
+        explained(binned((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),), beside)),
+    )
+    assert (both.worn_sides, right.worn_sides) == (NO_SIDE, LEFT)
+    (of_both,), (of_one,) = both.effects, right.effects
+    assert of_both.name == of_one.name == "axis_offset_lateral"
+    assert "profile_slope" in of_one.alternatives and "profile_slope" not in of_both.alternatives
