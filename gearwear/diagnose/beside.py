@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg.blas import dtrsm
 
 from gearwear.arrays import Floats, Ints
 
@@ -133,8 +132,12 @@ class Beside:
     def beside(self, which: Ints) -> Beside:
         """The same beside columns `which` too."""
         scaled, root, aim = self._scaled(which)
-        information, moment, square = spanned(scaled, self._across(self.place[which]) / root[:, None], aim / root)
-        return replace(self, information=self.information - information, moment=self.moment - moment, square=self.square - square)
+        across = self._across(self.place[which]) / root[:, None]
+        # Of columns that the others span rounding may leave less than nothing, which has no factor of Cholesky's.
+        spanned = np.linalg.solve(scaled, np.column_stack([across, aim / root]))
+        moment = self.moment - across.T @ spanned[:, -1]
+        square = float(self.square - (aim / root) @ spanned[:, -1])
+        return replace(self, information=self.information - across.T @ spanned[:, :-1], moment=moment, square=square)
 
     def tried(self, bases: Ints) -> tuple[Floats, Floats]:
         """Of each of some fits on columns `bases` (n, k), some of them `NOTHING`, the weighted sum of squares that it leaves, (n,), and the fall of it
@@ -147,9 +150,9 @@ class Beside:
         scaled *= (bases != NOTHING)[:, None, :]
         scaled += RIDGE * np.eye(bases.shape[1])
         inverse = np.linalg.inv(scaled)
-        drawn, amplitudes = inverse @ across, (inverse @ aim[..., None])[..., 0]
+        spanned, amplitudes = inverse @ across, (inverse @ aim[..., None])[..., 0]
         rest = self.moment - (amplitudes[:, None] @ across)[:, 0]
-        left = np.diag(self.information) - (drawn * across).sum(axis=1)
+        left = np.diag(self.information) - (spanned * across).sum(axis=1)
         good = left >= SPANNED * self.own  # a column that the base already spans has nothing left: no gain from rounding
         gains = np.zeros((count, len(self.candidates)))
         for block in self._blocks:
@@ -172,39 +175,19 @@ class Beside:
                 np.divide(rest[:, which[:, 0]] ** 2, left[:, which[:, 0]] * (1.0 + RIDGE), out=value, where=fine)
             elif size == 2:
                 one, other = which.T
-                mixed = self.information[one, other] - (drawn[:, :, one] * across[:, :, other]).sum(axis=1)
+                mixed = self.information[one, other] - (spanned[:, :, one] * across[:, :, other]).sum(axis=1)
                 a, b = left[:, one] * (1.0 + RIDGE), left[:, other] * (1.0 + RIDGE)
                 by = rest[:, one] ** 2 * b - 2.0 * rest[:, one] * rest[:, other] * mixed + rest[:, other] ** 2 * a
                 np.divide(by, a * b - mixed**2, out=value, where=fine)
             else:
                 part = self.information[which[:, :, None], which[:, None, :]] - np.einsum(
-                    "nbms,nbmt->nmst", drawn[:, :, which], across[:, :, which]
+                    "nbms,nbmt->nmst", spanned[:, :, which], across[:, :, which]
                 )
                 part = part[fine] + RIDGE * left[:, which][fine][:, :, None] * np.eye(size)
                 beyond = rest[:, which][fine]
                 value[fine] = (beyond * np.linalg.solve(part, beyond[..., None])[..., 0]).sum(axis=1)
             gains[:, block.at] = value
         return self.square - (amplitudes * aim).sum(axis=1), gains
-
-
-def spanned(scaled: Floats, across: Floats, aim: Floats) -> tuple[Floats, Floats, float]:
-    """What some columns span of others: of the sums of these with each other (q, q), of their moment (q,) and of the square.
-
-    Parameters
-    ----------
-    scaled : (k, k) float
-        Information of the columns, positive definite.
-    across, aim : (k, q), (k,) float
-        Their sums with the others, and their moment.
-
-    Notes
-    -----
-    By Cholesky's factor L, with Y = L⁻¹ `across`, it is Yᵀ Y: a product of a matrix with itself takes half the work of one of two.
-    """
-    lower, right = np.linalg.cholesky(scaled), np.column_stack([across, aim])
-    # Transposed, both lie in memory as LAPACK has them.
-    y = dtrsm(1.0, lower.T, right.T, side=1, overwrite_b=1).T
-    return y[:, :-1].T @ y[:, :-1], y[:, :-1].T @ y[:, -1], float(y[:, -1] @ y[:, -1])
 
 
 def _to_unit(information: Floats) -> Floats:
