@@ -91,7 +91,7 @@ def test_a_curve_that_cannot_be_met_is_refused():
     def corner(share):
         return np.column_stack([share, np.abs(share - 0.31)])
 
-    with pytest.raises(InputError, match=r"cannot be drawn to 1\.0e-10 mm"):
+    with pytest.raises(InputError, match=r"cannot be drawn to 1e-10 mm; the best reached is 0\.00"):
         interpolate(corner, 1e-10)
 
 
