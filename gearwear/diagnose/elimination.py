@@ -25,27 +25,19 @@ class Stood:
     Parameters
     ----------
     model : Model
-        The effects that are told.
+        The effects that are told; those that are `Evidence.faint` may not be named.
     evidence : tuple of Evidence
         One per effect.
     fold : (m,) int
         Folds they were judged by.
     patterns : tuple of Pattern
         What no effect explains, known before and found now.
-    faint : frozenset of str
-        Those of the model that are told, and not named.
     """
 
     model: Model
     evidence: tuple[Evidence, ...]
     fold: Ints
     patterns: tuple[Pattern, ...]
-    faint: frozenset[str]
-
-    @property
-    def named(self) -> Model:
-        """The effects that may be named."""
-        return tuple(c for c in self.model if c.name not in self.faint)
 
 
 ORDERS_OF_A_PART = 2
@@ -90,8 +82,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
             pieces_of = patterns if pieces_of is None else pieces_of
             worst = _makeshift(fit, problem, model, evidence, kept, pieces_of)
         if worst is None:
-            faint = frozenset(c.name for c, one in zip(model, evidence, strict=True) if one.faint)
-            return Stood(model, tuple(evidence), fold, patterns, faint)
+            return Stood(model, tuple(evidence), fold, patterns)
         model = model[:worst] + model[worst + 1 :]
 
 

@@ -292,15 +292,8 @@ class Loop(Card):
 
 
 def account(
-    fit: Fit,
-    problem: Problem,
-    model: Model,
-    evidence: list[Evidence],
-    fold: Ints,
-    patterns: tuple[Pattern, ...],
-    noise: float,
-    faint: frozenset[str] = frozenset(),
-) -> Loop:
+    fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], fold: Ints, patterns: tuple[Pattern, ...], noise: float
+) -> Loop:  # fmt: skip
     """Order the effects by gain, and follow the error from step to step.
 
     Parameters
@@ -317,11 +310,9 @@ def account(
         What is unexplained.
     noise : float
         Scatter of points, mm.
-    faint : frozenset of str
-        Effects that are told, and not named: part of the gear as it is.
     """
     order = _by_gain(problem, model)
-    order.sort(key=lambda i: not _unnamed(model[i], faint))  # what the drawing leaves open first
+    order.sort(key=lambda i: not _unnamed(model[i], evidence[i]))  # what the drawing leaves open first
     model, evidence = tuple(model[i] for i in order), [evidence[i] for i in order]
     steps = [fit.errors(model[:n], fold) for n in range(len(model) + 1)]
     which = problem.columns(model)
@@ -362,7 +353,7 @@ def account(
         )  # fmt: skip
     motion = np.zeros(6)
     motion[fit.dictionary.motion] = amplitudes[: len(fit.dictionary.pose)]
-    levels = tuple(one for one in found if _unnamed(one.candidate, faint))
+    levels = tuple(one for one, told in zip(found, evidence, strict=True) if _unnamed(one.candidate, told))
     named = tuple(found[len(levels) :])
     told = problem.context.fillets_told and ROOT_FORM not in {candidate.name for candidate in model}
     off = [
@@ -399,9 +390,9 @@ def account(
     )
 
 
-def _unnamed(candidate: Candidate, faint: frozenset[str]) -> bool:
+def _unnamed(candidate: Candidate, evidence: Evidence) -> bool:
     """Whether an effect is no finding: open by the drawing, or faint."""
-    return candidate.effect.kind is Kind.FORM or candidate.name in faint
+    return candidate.effect.kind is Kind.FORM or evidence.faint
 
 
 def _or_views(names: tuple[str, ...], fit: Fit, context: Context, candidate: Candidate, amplitudes: Floats) -> tuple[str, ...]:

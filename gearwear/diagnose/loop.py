@@ -265,12 +265,12 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
     if not context.fillets_told:
         fit = _with_fillets(fit, sound_cells(fit.cells, context.worn, faces=context.faces))
         problem = fit.problem(problem.unit, context, always)
-    loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, stood.faint)
+    loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
     unsized = {effect.name for effect in loop.effects if not effect.is_sized} - always
     if unsized:  # with all that its ± holds it may be nothing: no cause
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, tuple(c for c in stood.model if c.name not in unsized), noise, known)
-        loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, stood.faint)
+        loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
     loop = replace(loop, effects=tuple(effect.or_one_of(instead.get(effect.name, ())) for effect in loop.effects))
     # What all teeth share is known from the others, and no texture under the wear of one of them.
     return replace(loop, covariance=estimate_covariance(fit.cells, loop.left, loop.use, noise)) if loop.patterns else loop

@@ -45,6 +45,14 @@ def of_the_form(fit: Fit, problem: Problem, model: Model, form: bool = True) -> 
     side, and levels of the other surfaces, is not told from it. What the maker does stands in its place, or the form that is left has no name.
     Without `form` what scanners do often is not asked about.
     """
+
+    def by_scanner(candidate: Candidate) -> bool:
+        """Whether the scanner may not have done it at all: edges every scan rounds."""
+        known = candidate.effect
+        return known.kind is Kind.MEASUREMENT and candidate.name != EDGE_ROUNDING and (form or not known.usual)
+
+    if not any(map(by_scanner, model)):
+        return model, {}
     cells = fit.cells
     wide = fit.dictionary.with_columns(on_each_side(cells, any_profile(cells)))
     gram = replace(fit, dictionary=wide).problem(problem.unit, problem.context).gram
@@ -56,11 +64,6 @@ def of_the_form(fit: Fit, problem: Problem, model: Model, form: bool = True) -> 
         columns = [c.columns for c in candidates]
         alone, left = (np.asarray(gram.gains(which, columns)) for which in (beside, np.concatenate([beside, profiles])))
         return np.asarray(left >= rules().stands_in * alone, dtype=np.bool_)
-
-    def by_scanner(candidate: Candidate) -> bool:
-        """Whether the scanner may not have done it at all: edges every scan rounds."""
-        known = candidate.effect
-        return known.kind is Kind.MEASUREMENT and candidate.name != EDGE_ROUNDING and (form or not known.usual)
 
     taken_out = {c.name for i, c in enumerate(model) if by_scanner(c) and not told([c], model[:i] + model[i + 1 :])[0]}
     if not taken_out:

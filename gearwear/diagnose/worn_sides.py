@@ -438,9 +438,8 @@ class _Scan:
 
     def _alike(self, model: Model, loss: Floats, worn: frozenset[Side], first: Floats) -> Robust:
         """The fit of a model with as much of a loss (m,) on all flanks of each side; `first` as in `robust_fit`."""
-        side, rows = self.fit.cells.points.side[self.rows], self.rows
-        law = np.column_stack([np.where(side == int(one), loss[rows], 0.0) for one in Side if one in worn])
-        return self.robust(np.hstack([self.columns(model), law]), losses=law.shape[1], first=first)
+        law, _ = on_worn(self.fit.cells, -loss[:, None], worn)
+        return self.robust(np.hstack([self.columns(model), law[self.rows]]), losses=law.shape[1], first=first)
 
     def _differ_more(self, left: Floats, weight: Floats, loss: Floats, side: Side) -> bool:
         """`differ_more` of the flanks of a side in the shape of a loss (m,), in what effects leave (m,), against those of the other side, who wore it not."""

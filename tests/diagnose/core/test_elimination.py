@@ -19,6 +19,11 @@ SIGN = np.where(AT.left, 1.0, -1.0)
 ANGLE = 2.0 * np.pi * AT.tooth / TEETH
 
 
+def named(found):
+    """The effects that may be named."""
+    return [candidate for candidate, one in zip(found.model, found.evidence, strict=True) if not one.faint]
+
+
 def stood(true, *blocks, seed=1, unit=1.0):
     """Names of the effects that stand, and the orders of the patterns, for a field in mm and toys with their sheets (…, p)."""
     rng = np.random.default_rng(seed)
@@ -26,7 +31,7 @@ def stood(true, *blocks, seed=1, unit=1.0):
     sheets = [(toy, field if field.ndim == 5 else field[..., None]) for toy, field in blocks]
     fit = fit_of(grid(), deviation, sheets, NOISE, COUNT, turns=True)
     found = eliminate(fit, fit.problem(unit, None), fit.dictionary.candidates, NOISE)
-    return {candidate.name for candidate in found.named}, [pattern.order for pattern in found.patterns]
+    return {candidate.name for candidate in named(found)}, [pattern.order for pattern in found.patterns]
 
 
 # What fails its own evidence.
@@ -55,11 +60,11 @@ def test_an_effect_too_small_for_the_scan_is_not_named_though_it_is_told():
     """A hundredth of the noise of a point is below what a scan may name, however many points there are; the gear has it all the same."""
     small = 0.01 * NOISE * U / np.sqrt(np.mean(U**2))
     scatter = 1e-4 * NOISE * np.random.default_rng(1).normal(size=U.shape)
-    for factor, named in ((1.0, 0), (20.0, 1)):
+    for factor, count in ((1.0, 0), (20.0, 1)):
         fit = fit_of(grid(), factor * small + scatter, [(Toy("small"), U[..., None])], NOISE, 1e8)
         found = eliminate(fit, fit.problem(1.0, None), fit.dictionary.candidates, NOISE)
         assert len(found.model) == 1
-        assert len(found.named) == named
+        assert len(named(found)) == count
 
 
 def test_what_is_too_small_to_be_named_makes_no_other_uneven():
@@ -69,8 +74,8 @@ def test_what_is_too_small_to_be_named_makes_no_other_uneven():
     toys = [(Toy("bulge"), bulge[..., None]), (Toy("lead"), ZETA[..., None])]
     fit = fit_of(grid(), 0.22 * NOISE * bulge + lead + scatter, toys, NOISE, 1e8)
     found = eliminate(fit, fit.problem(1.0, None), fit.dictionary.candidates, NOISE)
-    assert {c.name for c in found.named} == {"bulge"}
-    assert found.faint == {"lead"}
+    assert {c.name for c in named(found)} == {"bulge"}
+    assert {c.name for c, one in zip(found.model, found.evidence, strict=True) if one.faint} == {"lead"}
 
 
 def test_what_left_out_teeth_do_not_confirm_falls():
