@@ -20,10 +20,8 @@ from gearwear.errors import InputError
 
 FILLET_KEYS = "cutter_teeth and cutter_tip_radius, or fillet_radius,"
 """What a drawing would say of a ring's root."""
-CENTRE_ROUNDING = 0.5e-3
-"""mm; half the last digit of a centre distance written to 1 µm: by so much it may be on the wrong side of what the gears have room for."""
-_NOISE = 1e-9
-"""mm; of the computer's digits."""
+CENTRE_ROUNDING = 0.5e-3 + 1e-9
+"""mm; half the last digit of a centre distance written to 1 µm, and the computer's: by so much it may be on the wrong side of what the gears have room for."""
 MAX_HELIX_DIFFERENCE = 1e-9
 """Largest sum of the two helix angles of a pair, rad: they are opposite."""
 
@@ -150,7 +148,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
             f"[pair] centre_distance = {as_given(centre)} mm: must be above the {relation} of the base radii, {at_least(abs(bases))} mm"
         )
     for part, clearance in zip(("pinion", "gear"), tip_clearances(pinion, gear, centre), strict=True):
-        if clearance < -CENTRE_ROUNDING - _NOISE:
+        if clearance < -CENTRE_ROUNDING:
             limit = centre - orientation * clearance
             bound = f"at most {at_most(limit)} mm is possible" if g.internal else f"at least {at_least(limit)} mm is needed"
             raise InputError(
@@ -163,7 +161,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     tight = tight_involute(pinion, gear)
     without_play = abs(bases) / math.cos(inverse_involute(tight)) if tight >= 0.0 else math.inf
     # Of a ring whose teeth jam at every distance `tight` is negative; outside one no teeth jam then.
-    if play < 0.0 and not abs(centre - without_play) <= CENTRE_ROUNDING + _NOISE:
+    if play < 0.0 and not abs(centre - without_play) <= CENTRE_ROUNDING:
         remedy = f"a {'smaller' if g.internal else 'larger'} centre distance"
         if math.isfinite(without_play):
             remedy += f" ({f'at most {at_most(without_play)}' if g.internal else f'at least {at_least(without_play)}'} mm)"

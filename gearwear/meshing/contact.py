@@ -310,14 +310,14 @@ def check_contact(driver: ToothProfiles, driven: ToothProfiles, centre: float) -
     if mate.spec.internal:
         bases = mate.base_radius - gear.base_radius
         most = float(min(mate.root_radius - driver.radius[-1], driven.radius[0] - gear.root_radius))
-        if not bases < centre <= most + CENTRE_ROUNDING + 1e-9:
+        if not bases < centre <= most + CENTRE_ROUNDING:
             raise InputError(
                 f"centre distance {as_given(centre)} mm: inside this ring it must lie between {at_least(bases)} and {at_most(most)} mm"
             )
         return
     roots = float(max(driver.radius[-1] + mate.root_radius, driven.radius[-1] + gear.root_radius))
     bases = gear.base_radius + mate.base_radius
-    if not (centre > roots - CENTRE_ROUNDING - 1e-9 and centre > bases):
+    if not (centre > roots - CENTRE_ROUNDING and centre > bases):
         raise InputError(
             f"centre distance {as_given(centre)} mm: tips meet roots; it must be above {at_least(max(roots, bases))} mm"
         )
