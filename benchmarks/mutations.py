@@ -151,7 +151,7 @@ MUTATIONS = [
         ("fleet/line.py", "own = NORMAL_95 * std if", "own = 0.0 * std if", "fleet/test_ranges.py"),
         ("fleet/trend.py", "else replace(reach, low=0.0)", "else reach", "fleet/test_ranges.py"),
         ("fleet/trend.py", "place = 0 if trend.conformity is None else", "place = 0 if True else", "fleet/test_ranges.py"),
-        ("fleet/significance.py", "p <= rate * i / len(known)", "p <= rate", "fleet/test_trend.py"),
+        ("fleet/significance.py", "p <= LEVEL * i / len(known)", "p <= LEVEL", "fleet/test_trend.py"),
         ("fleet/significance.py", "level / (len(order) - rank)", "level", "fleet/test_gauge.py"),
         ("fleet/anova.py", "POOLED = 0.25", "POOLED = 0.999", "fleet/test_anova.py"),
         ("fleet/anova.py", "SHARE = 0.95", "SHARE = 0.8", "fleet/test_anova.py"),

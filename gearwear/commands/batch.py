@@ -39,8 +39,6 @@ failed for another reason with the next batch.
 The work is done by as many processes as this machine has processors, or by the workers
 of a Dask scheduler. Needs the extra: pip install 'gearwear[batch]'."""
 
-WIDTH = 80
-"""Letters of a line at the end."""
 SHOWN = 10
 """Lines on refused and failed scans at the end."""
 
@@ -171,21 +169,21 @@ def _summary(tally: Tally, store: Store, manifest: Path) -> list[tuple[str, str]
     ]
     if tally.dropped:
         more = f"! {tally.dropped} scans of the earlier list of this name are not in it, and are left out of trend and gauge; a list with a name of its own would keep them"
-        lines += wrapped(more, WIDTH, "yellow", 2)
+        lines += wrapped(more, "yellow", 2)
     for one, other, scan in tally.same[:SHOWN]:
         said = f"! lines {one.line} and {other.line} of the list, gears {one.gear_id} and {other.gear_id}, are the same scan: {scan} holds what that of line {one.line} does"
-        lines += wrapped(said, WIDTH, "yellow", 2)
+        lines += wrapped(said, "yellow", 2)
     if len(tally.same) > SHOWN:
         lines.append((f"! and {len(tally.same) - SHOWN} more rows that list the scan of another gear", "yellow"))
     states = store.states()
     wrong = [(row, states[row.key]) for row in store.listed() if states.get(row.key) in (State.REFUSED, State.FAILED)]
     for row, state in wrong[:SHOWN]:
         said = " ".join(filter(None, ("!", row.cells["gear_id"], row.cells.get("inspected", ""), f"{state}:")))
-        lines += wrapped(f"{said} {store.why(row.key, state)}", WIDTH, "yellow", 2)
+        lines += wrapped(f"{said} {store.why(row.key, state)}", "yellow", 2)
     if len(wrong) > SHOWN:
         lines.append((f"! and {len(wrong) - SHOWN} more: the files *.refused and *.failed in the store say why", "yellow"))
     known = {*NEEDED, *OPTIONAL, "key"}
     more_columns = dict.fromkeys(name for row in store.listed_in(manifest.name) for name in row.cells if name not in known)
     if more_columns:
-        lines += wrapped(f"Further columns, kept as they are: {', '.join(more_columns)}", WIDTH, "dim", 2)
+        lines += wrapped(f"Further columns, kept as they are: {', '.join(more_columns)}", "dim", 2)
     return [*(line for line in lines if line[0]), (f"Written to {store.folder}", "dim")]

@@ -74,18 +74,18 @@ class ToothProfiles:
         return np.asarray(radius * at, dtype=np.float64)
 
 
-def section_heights(gear: Gear, rows: int = 33) -> Floats:
-    """Heights (mm) of sections that say how the flanks vary along the face: mid-face alone, or `rows` and the knees where they do."""
+def section_heights(gear: Gear) -> Floats:
+    """Heights (mm) of sections that say how the flanks vary along the face: mid-face alone, or 33 and the knees where they do."""
     if not gear.modified_along_face:
         return np.array([0.5 * gear.face_width])
     knees = [knee for side in Side for knee in gear.drawn(side).face_knees]
-    return np.union1d(np.linspace(0.0, gear.face_width, rows), knees)
+    return np.union1d(np.linspace(0.0, gear.face_width, 33), knees)
 
 
-def section_radii(gear: Gear, count: int = 200) -> Floats:
-    """Radii (mm, rising) of a profile: `count` between the root circle and the flank's end, and the knees of what is modified."""
+def section_radii(gear: Gear) -> Floats:
+    """Radii (mm, rising) of a profile: 200 between the root circle and the flank's end, and the knees of what is modified."""
     low, high = sorted((gear.root_radius, gear.flank_end_radius))
-    even = np.linspace(low, high, count)
+    even = np.linspace(low, high, 200)
     if not gear.modified:
         return even
     knees = [math.hypot(gear.base_radius, knee) for side in Side for knee in gear.drawn(side).profile_knees]

@@ -23,14 +23,14 @@ def two_sided(statistic: float, degrees: float = math.inf) -> float:
     return 2.0 * float(below)
 
 
-def discoveries(p_values: Sequence[float], rate: float = LEVEL) -> list[bool]:
-    """Which are significant, so that at most a share `rate` of them is chance (Benjamini and Hochberg 1995); nan never is.
+def discoveries(p_values: Sequence[float]) -> list[bool]:
+    """Which are significant, so that at most a share `LEVEL` of them is chance (Benjamini and Hochberg 1995); nan never is.
 
     >>> discoveries([0.01, 0.02, 0.04, 0.2, math.nan])
     [True, True, False, False, False]
     """
     known = sorted(p for p in p_values if not math.isnan(p))
-    limit = max((p for i, p in enumerate(known, 1) if p <= rate * i / len(known)), default=-1.0)
+    limit = max((p for i, p in enumerate(known, 1) if p <= LEVEL * i / len(known)), default=-1.0)
     return [p <= limit for p in p_values]
 
 

@@ -14,6 +14,8 @@ from gearwear.fleet.outcome import State
 from gearwear.fleet.reading import StoredFleet
 from gearwear.fleet.trend import GearTrend, Trend
 
+WIDTH = 80
+"""Letters of a line on the terminal."""
 MOST = 15
 """Gears on the terminal."""
 NAMED = 5
@@ -75,26 +77,26 @@ def verdict_words(gears: Sequence[GearTrend]) -> str:
     return sentence(f"{counted(len(gears), 'gear')}: {'; '.join(filter(None, [kept, *without]))}")
 
 
-def trend_lines(fleet: StoredFleet, gears: Sequence[GearTrend], width: int = 80) -> list[tuple[str, str]]:
+def trend_lines(fleet: StoredFleet, gears: Sequence[GearTrend]) -> list[tuple[str, str]]:
     """The trend for the terminal, each line with its style."""
-    lines = [(fleet_words(fleet, gears), "dim"), ("", ""), *wrapped(verdict_words(gears), width, "bold"), ("", "")]
+    lines = [(fleet_words(fleet, gears), "dim"), ("", ""), *wrapped(verdict_words(gears), "bold"), ("", "")]
     wide = min(max(len(gear.gear_id) for gear in gears[:MOST]), 20)
     for rank, gear in enumerate(gears[:MOST], 1):
         style = {Conformity.NOT_CONFORMING: "bold red", Conformity.NEITHER: "yellow"}.get(
             gear.conformity or Conformity.CONFORMING, ""
         )
         head = f"{rank:>3}  {gear.gear_id:<{wide}}  {state_words(gear)}: "
-        lines += wrapped(head + gear_words(gear), width, style, indent=7 + wide)
-        lines += [line for note in gear.notes for line in wrapped(f"! {note}", width, "yellow", 7 + wide, 7 + wide)]
+        lines += wrapped(head + gear_words(gear), style, indent=7 + wide)
+        lines += [line for note in gear.notes for line in wrapped(f"! {note}", "yellow", 7 + wide, 7 + wide)]
     if len(gears) > MOST:
         lines.append((f"     and {len(gears) - MOST} more, in trend.html and trend.csv", ""))
     return [*lines, ("", "")]
 
 
-def wrapped(text: str, width: int, style: str, indent: int = 0, first: int = 0) -> list[tuple[str, str]]:
-    """Lines no wider than `width`; a value stays with its unit."""
+def wrapped(text: str, style: str, indent: int = 0, first: int = 0) -> list[tuple[str, str]]:
+    """Lines no wider than `WIDTH`; a value stays with its unit."""
     return [
-        (line, style) for line in textwrap.wrap(unbroken(text), width, initial_indent=" " * first, subsequent_indent=" " * indent)
+        (line, style) for line in textwrap.wrap(unbroken(text), WIDTH, initial_indent=" " * first, subsequent_indent=" " * indent)
     ]
 
 
@@ -130,11 +132,11 @@ def value_words(trend: Trend) -> str:
     return f"{words} (may be {significant(last.value - down)} to {significant(last.value + up)})"
 
 
-def gauge_lines(studies: Sequence[GaugeStudy], width: int = 80) -> list[tuple[str, str]]:
+def gauge_lines(studies: Sequence[GaugeStudy]) -> list[tuple[str, str]]:
     """The gauge study for the terminal."""
     if not studies:
-        return [*wrapped(NOTHING_REPEATED, width, "bold"), ("", "")]
-    lines = [(study_words(studies), "dim"), ("", ""), *wrapped(accord_words(studies), width, "bold"), ("", "")]
+        return [*wrapped(NOTHING_REPEATED, "bold"), ("", "")]
+    lines = [(study_words(studies), "dim"), ("", ""), *wrapped(accord_words(studies), "bold"), ("", "")]
     lines.append((f"  {'':<{NAME}}{'repeating':>12}{'operators':>10}{'GRR':>6}{'ndc':>5}  repeats / stated", "dim"))
     for study in studies:
         lines.append((f"  {gauge_line(study)}", "yellow" if study.accord in (Accord.MORE, Accord.OPERATORS) else ""))

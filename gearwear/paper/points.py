@@ -15,6 +15,8 @@ from gearwear.paper.inputs import Inputs
 
 ROUNDING = 0.05
 """mm; the coordinates are printed to 0.1 mm."""
+CONFIDENCE = 0.95
+"""Of the intervals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +78,7 @@ def point_pair(inputs: Inputs) -> PointPair:
     )
 
 
-def rounding_uncertainty(inputs: Inputs, value: Callable[[Inputs], float], confidence: float = 0.95) -> Uncertainty:
+def rounding_uncertainty(inputs: Inputs, value: Callable[[Inputs], float]) -> Uncertainty:
     """Spread of a number made of A and B when each of their four coordinates is known to ±0.05 mm, evenly.
 
     Parameters
@@ -85,8 +87,6 @@ def rounding_uncertainty(inputs: Inputs, value: Callable[[Inputs], float], confi
         Where the points are.
     value : callable
         The number, from inputs.
-    confidence : float
-        Of the interval.
 
     Notes
     -----
@@ -107,9 +107,9 @@ def rounding_uncertainty(inputs: Inputs, value: Callable[[Inputs], float], confi
     low, high = 0.0, sum(widths)
     while high - low > 1e-12:
         half = 0.5 * (low + high)
-        low, high = (half, high) if sum_of_uniforms(half, widths) < 0.5 + 0.5 * confidence else (low, half)
+        low, high = (half, high) if sum_of_uniforms(half, widths) < 0.5 + 0.5 * CONFIDENCE else (low, half)
     std = math.sqrt(sum(w * w for w in widths) / 3.0)
-    return Uncertainty(std, middle + shift - high, middle + shift + high, confidence)
+    return Uncertainty(std, middle + shift - high, middle + shift + high, CONFIDENCE)
 
 
 def sum_of_uniforms(value: float, half_widths: list[float]) -> float:

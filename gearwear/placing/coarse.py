@@ -36,7 +36,7 @@ class Sample:
     normals: Floats
 
 
-def take_sample(points: Floats, normals: Floats | None, seed: int = 0) -> Sample:
+def take_sample(points: Floats, normals: Floats | None) -> Sample:
     """Thin a scan and give every point a normal from its neighbours; strays are left out.
 
     Parameters
@@ -45,12 +45,10 @@ def take_sample(points: Floats, normals: Floats | None, seed: int = 0) -> Sample
         The scan, mm.
     normals : (n, 3) float or None
         Normals of the file, if it has any.
-    seed : int
-        Of the choice of points.
     """
     from scipy.spatial import cKDTree
 
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     pick = rng.choice(len(points), SAMPLE, replace=False) if len(points) > SAMPLE else np.arange(len(points))
     sample = points[pick]
     tree = cKDTree(sample)
@@ -65,9 +63,9 @@ def take_sample(points: Floats, normals: Floats | None, seed: int = 0) -> Sample
     return Sample(sample[kept], vectors[:, :, 0])
 
 
-def axis_candidates(sample: Sample, count: int = 3, seed: int = 0) -> list[Floats]:
-    """Directions the gear's axis may have, best first: most normals square to it or along it."""
-    rng = np.random.default_rng(seed)
+def axis_candidates(sample: Sample) -> list[Floats]:
+    """Three directions the gear's axis may have, best first: most normals square to it or along it."""
+    rng = np.random.default_rng(0)
     normals = sample.normals
     pairs = rng.integers(0, len(normals), (400, 2))
     crossed = np.cross(normals[pairs[:, 0]], normals[pairs[:, 1]])
@@ -87,7 +85,7 @@ def axis_candidates(sample: Sample, count: int = 3, seed: int = 0) -> list[Float
     for index in np.argsort(-score):
         if all(abs(float(guesses[index] @ other)) < math.cos(math.radians(10.0)) for other in axes):
             axes.append(_polish_axis(guesses[index], normals))
-        if len(axes) == count:
+        if len(axes) == 3:
             break
     return axes
 
@@ -228,7 +226,7 @@ def _planar(points: Floats, sides: Bools, gear: Gear, turns: Floats) -> list[tup
     return candidates[:3]
 
 
-def _centres(points: Floats, gear: Gear, tries: int = 300, seed: int = 0) -> list[Floats]:
+def _centres(points: Floats, gear: Gear) -> list[Floats]:
     """Candidate centres: a free circle through the hull, and circles of the tip radius through two hull points."""
     from scipy.spatial import ConvexHull, QhullError
 
@@ -243,8 +241,8 @@ def _centres(points: Floats, gear: Gear, tries: int = 300, seed: int = 0) -> lis
     except QhullError:
         return [points.mean(axis=0)]
 
-    rng = np.random.default_rng(seed)
-    pairs = hull[rng.integers(0, len(hull), (tries, 2))]
+    rng = np.random.default_rng(0)
+    pairs = hull[rng.integers(0, len(hull), (300, 2))]
     chord = pairs[:, 1] - pairs[:, 0]
     length = np.hypot(chord[:, 0], chord[:, 1])
     usable = (length > 0.3 * gear.tip_radius) & (length < 1.98 * gear.tip_radius)

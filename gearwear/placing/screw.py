@@ -60,22 +60,20 @@ def fine_sample(points: Floats) -> Sample:
     return Sample(picked[kept], np.linalg.eigh(np.einsum("nki,nkj->nij", around, around))[1][:, :, 0])
 
 
-def find_screw(sample: Sample, seed: int = 0) -> Screw | None:
+def find_screw(sample: Sample) -> Screw | None:
     """The screw motion that carries most of a scan into itself.
 
     Parameters
     ----------
     sample : Sample
         Thinned scan with normals of unknown sign.
-    seed : int
-        Of the choice of points.
 
     Returns
     -------
     Screw or None
         Of a double helical gear that of either half; None where nothing is carried into itself.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     points = sample.points - np.median(sample.points, axis=0)
     reach = math.sqrt(float((points**2).sum(axis=1).mean()))
     rows = np.hstack([sample.normals, np.cross(points / max(reach, 1e-300), sample.normals)])

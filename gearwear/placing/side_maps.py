@@ -266,13 +266,13 @@ def _slope(value: Floats, at: Floats, axis: int) -> Floats:
     return np.moveaxis(slope, -1, axis)
 
 
-def window_mean(side_maps: SideMaps, size: int = 3) -> tuple[Floats, Floats]:
-    """Count-weighted mean over size × size cells of the same side, and its number of points; nan where nothing was seen."""
+def window_mean(side_maps: SideMaps) -> tuple[Floats, Floats]:
+    """Count-weighted mean over 3 × 3 cells of the same side, and its number of points; nan where nothing was seen."""
     value = np.where(side_maps.seen, np.nan_to_num(side_maps.deviation), 0.0) * side_maps.count
-    rows = min(size, side_maps.deviation.shape[2])
-    box = (1, 1, rows, size)
-    total = ndimage.uniform_filter(value, box, mode="constant") * (rows * size)
-    number = ndimage.uniform_filter(side_maps.count, box, mode="constant") * (rows * size)
+    rows = min(3, side_maps.deviation.shape[2])
+    box = (1, 1, rows, 3)
+    total = ndimage.uniform_filter(value, box, mode="constant") * (rows * 3)
+    number = ndimage.uniform_filter(side_maps.count, box, mode="constant") * (rows * 3)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(number > 0.5, total / number, np.nan), number
 

@@ -257,14 +257,14 @@ def magnification(nominal_xy: Floats, worn_xy: Floats, share: float = 0.06) -> f
     return max((f for f in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0) if f <= wanted), default=1.0)
 
 
-def usual_range(values: Floats, reach: float = 6.0) -> tuple[float, float]:
-    """Least and greatest of what lies near the many: within `reach` times the middle half's width of it, so that one pit sets no scale.
+def usual_range(values: Floats) -> tuple[float, float]:
+    """Least and greatest of what lies near the many: within six times the middle half's width of it, so that one pit sets no scale.
 
     >>> usual_range(np.array([1.0, 1.1, 1.2, 1.3, 9.0]))
     (1.0, 1.3)
     """
     first, last = np.quantile(values, [0.25, 0.75])
-    room = reach * max(float(last - first), 1e-3)
+    room = 6.0 * max(float(last - first), 1e-3)
     near = values[(values >= first - room) & (values <= last + room)]
     return float(near.min()), float(near.max())
 

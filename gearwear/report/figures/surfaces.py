@@ -206,12 +206,12 @@ def section(arrays: ReportArrays, tooth: int, z_mm: float, count: int = 90) -> t
     return np.stack([x[0], y[0]], axis=1), np.stack([x[1], y[1]], axis=1)
 
 
-def whole_outline(arrays: ReportArrays, count: int = 60) -> tuple[Floats, Floats, Floats]:
+def whole_outline(arrays: ReportArrays) -> tuple[Floats, Floats, Floats]:
     """Outline of the whole gear at the middle height: nominal and worn in mm, and the deviation in µm (nan off the flanks)."""
     gear = arrays.gear
     radius = np.concatenate([
         gear.root_radius + (gear.form_radius - gear.root_radius) * np.linspace(0.0, 1.0, 9)[:-1] ** 2,
-        np.hypot(np.linspace(gear.form_roll, gear.tip_roll, count), gear.base_radius),
+        np.hypot(np.linspace(gear.form_roll, gear.tip_roll, 60), gear.base_radius),
     ])  # fmt: skip
     z = np.array([arrays.z_mm[middle_row(arrays)]])
     worn = _half_angles(arrays.worn, radius, z)[:, :, 0]
