@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearwear.comparison.stations import in_accord, worn_notes
+from gearwear.comparison.notes import in_accord, worn_notes
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
 from gearwear.report.words.verdict import doubts, verdict

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import gearwear as gw
-from gearwear.comparison.stations import _thickness
+from gearwear.comparison.thick import corrected_thickness
 from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK, locate
 from tests.placing.placing import designed
@@ -29,7 +29,7 @@ def test_the_thinnest_tooth_is_known_no_better_than_what_made_it_so(effect, thic
     flanks = scan.points[locate(scan.points, gear).surface == FLANK]
     found = gw.find_effects(gw.register(Design({"gear": gear}), gw.as_scan(flanks)))
     (either,) = found.loop.either
-    thinnest = _thickness(found, found.sections).thinnest()
+    thinnest = corrected_thickness(found, found.sections).thinnest()
     assert thinnest.low < gear.tooth_thickness + thicker < thinnest.high
     # Its own interval alone does not hold both.
     assert 2.0 * 1.96 * thinnest.std < THICK < thinnest.high - thinnest.low < 1.5 * THICK

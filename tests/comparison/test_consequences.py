@@ -12,8 +12,9 @@ import pytest
 
 from gearwear.comparison.consequences import Change, unshared_std
 from gearwear.comparison.contributions import put_back, side_fields, side_points
+from gearwear.comparison.notes import scanner_notes
 from gearwear.comparison.results import Results
-from gearwear.comparison.stations import compare, scanner_notes
+from gearwear.comparison.stations import compare
 from gearwear.design import parse_design, read_design
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import locate

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from gearwear.comparison.stations import compare, worn_notes
+from gearwear.comparison.notes import worn_notes
+from gearwear.comparison.stations import compare
 from gearwear.design import read_design
 from gearwear.design.side import Side
 from tests.commands.doors import scan_file

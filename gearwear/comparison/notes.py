@@ -1,0 +1,218 @@
+"""What the reader must know of a comparison beside its numbers: sides that look worn, edges, the scanner, a forecast that there is none of."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.open_volume import even_loss, level_open, thinning_open
+from gearwear.comparison.placed_notes import THINNED, alone
+from gearwear.comparison.results import PairResult
+from gearwear.comparison.same_teeth import SameTeeth
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
+from gearwear.design.quantity import counted, significant
+from gearwear.design.side import Side
+from gearwear.design.spec import ScannerSpec
+from gearwear.design.surface import FILLET, FLANK, TIP
+from gearwear.diagnose.found import Loop
+from gearwear.loaded.study import load_left_out
+from gearwear.placing.datum import LOW, Datum, bends_otherwise
+from gearwear.wear.regions import UNIT, Wear
+from gearwear.wear_law.study import Ahead
+
+HALVES = "double helical: taper, twist and feed marks are not looked for; the halves are inspected one by one"
+SECTION_WEIGHED = "[weighing] is left out: the gear was weighed, but a planar section has no volume"
+"""Said of a weighed gear of which only a section was scanned."""
+UNLIKE = 2.0
+"""Factor between the noise found and the noise stated of the scanner from which it is said."""
+
+
+def notes_of(
+    design: Design, measured: MeasuredGear, wear: Wear, before: SameTeeth | None, pair: PairResult | None, ahead: Ahead | None
+) -> tuple[str, ...]:
+    """All notes of a comparison, each a sentence.
+
+    Parameters
+    ----------
+    design : Design
+        As stated.
+    measured : MeasuredGear
+    wear : Wear
+    before : SameTeeth or None
+        How the teeth of the scan before wear were told; None without one.
+    pair : PairResult or None
+    ahead : Ahead or None
+        What was to be forecast.
+    """
+    gear, unworn = measured.gear, before is not None
+    return (
+        *measured.doubts,  # what changes the meaning of numbers first: a terminal shows the first few
+        *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn) else ()),
+        *worn_notes(measured, wear, unworn),
+        *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
+        *edge_notes(wear),
+        *scanner_notes(design.scanner, measured.placed.registration.noise),
+        *((SECTION_WEIGHED,) if design.weighing is not None and measured.planar else ()),
+        *load_left_out(design),
+        *_no_forecast(pair, ahead),
+        *_off_reference(gear),
+        *dict.fromkeys((*measured.remarks, *design.warnings)),  # an assumed root is said by both
+        *((HALVES,) if gear.spec.gap > 0.0 else ()),
+        *(() if pair is not None else (alone(measured.context),)),
+    )
+
+
+def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> MeasuredGear:
+    """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is said to look worn where
+    it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells, or
+    where what the loop found leaves none."""
+    datum, loop = measured.placed.registration.datum, measured.loop
+    if datum.low and (before or (loop is not None and (measured.faces or not _still_low(measured, loop)))):
+        return _with_datum(measured, replace(datum, low=0.0))
+    side = datum.worn_side
+    # The other side is no datum either then: `worn_notes` says so.
+    said = measured.faces or (loop is not None and len(loop.worn_sides) == 2)
+    if side is None:
+        return measured
+    told = {region.tooth for region in wear.regions if region.side is side}
+    worn, spared = len(told), sum(flank.side is side and flank.says and flank.tooth not in told for flank in wear.flanks)
+    if worn and (loop is None or side in loop.worn_sides):
+        looks = (
+            f"wear stands out on {worn} of {worn + spared} {side} flanks and none of them is"
+            if spared
+            else f"all {side} flanks look worn and are not"
+        )
+        borne_out = f"{looks} used as datum; the {side.opposite} (coast) flanks are assumed unworn"
+    else:
+        borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them")
+    return _with_datum(measured, replace(datum, borne_out="" if said else borne_out))
+
+
+def _with_datum(measured: MeasuredGear, datum: Datum) -> MeasuredGear:
+    registration = replace(measured.placed.registration, datum=datum)
+    return replace(measured, placed=replace(measured.placed, registration=registration))
+
+
+def _still_low(measured: MeasuredGear, loop: Loop) -> bool:
+    """Whether flanks lie low against fillets and tips beside what the loop found, or that says itself that they are thin."""
+    surface = measured.first.points.surface
+    flank, *others = (loop.residual_after[loop.use & (surface == code)] for code in (FLANK, FILLET, TIP))
+    known = [float(np.median(other)) for other in others if len(other)]
+    if not known or not len(flank) or loop.thinner_by(measured.first.points.take(loop.use & (surface == FLANK))) > 0.0:
+        return True
+    return float(np.median(flank)) - min(known) < -LOW
+
+
+def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tuple[str, ...]:
+    """What the reader must know where a side is worn throughout, or may be; a scan `before` wear tells what was made so."""
+    loop = measured.loop
+    if loop is None:
+        return ()
+    notes = _where_the_mate_ran(measured)
+    if len(level_open(measured)) == 2:
+        plain = [
+            side for side in sorted(loop.worn_sides, reverse=True) if not any(region.side is side for region in wear.regions)
+        ]
+        seen = f", though no wear stands out on the {' and '.join(map(str, plain))} ones" if plain else ""
+        notes.append(
+            f"the flanks of both sides look worn{seen}, and are not used as datum: where the teeth stand rests on tips, roots and fillets"
+            + ("" if before else ", and an even loss of both sides could as well be thinner teeth")
+        )
+    for sides in loop.undecided:
+        which = " and ".join(str(side) for side in sorted(sides, reverse=True))
+        notes.append(
+            f"the {which} flanks may be worn throughout, or all made so: the scan cannot tell"
+            if sides
+            else "what the worn flanks have in common may be how they were made: the scan cannot tell"
+        )
+    notes += [
+        f"a burr of {significant(burr.volume, 2)} ± {significant(burr.std, 1)} mm³ stands on the tips of the {burr.side} flanks: it is not taken off what they lost"
+        for burr in wear.burrs
+    ]
+    notes += [
+        f"a ridge of {significant(1e3 * ridge.height, 2)} ± {significant(1e3 * ridge.std, 1)} µm stands at the pitch line of the worn {ridge.side} flanks: metal that was moved there by plastic flow; it is not"
+        " taken off what they lost"
+        for ridge in wear.ridges
+    ]
+    notes += [
+        f"the worn {side} flanks stand {1e3 * height:.0f} µm proud of the design where they are highest: the teeth were cut thicker than drawn,"
+        " and what is lost is counted from there"
+        for side, height in zip(Side, wear.proud, strict=True)
+        if height > 0.0
+    ]
+    if wear.unseen > wear.volume_std:
+        notes.append(
+            "no worn flank was seen whole: what is missing where nothing was seen is not in the volume, and would be up to"
+            f" {significant(wear.unseen, 2)} {UNIT[wear.planar]} were it as deep there as anywhere else"
+        )
+    if wear.hidden_pits > 0.0:
+        notes.append(
+            f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {significant(wear.hidden_pits, 2)} mm³"
+        )
+    open_ = even_loss(measured, wear)
+    if open_ is not None and not before:
+        low, high = max(wear.volume - open_, 0.0), wear.volume + open_
+        notes.append(
+            f"the tolerance of the tooth thickness leaves an even loss of whole flanks open: the volume may lie between {low:.3g} and {high:.3g} mm³;"
+            " what has the shape of sliding does not hang on it"
+        )
+    return tuple(notes)
+
+
+def _where_the_mate_ran(measured: MeasuredGear) -> list[str]:
+    """What flanks beside where their mate ran tell, a sentence for each stretch."""
+    faces, width, notes = measured.faces, measured.gear.face_width, list[str]()
+    for low, high in dict.fromkeys((round(face.low, 1), round(face.high, 1)) for face in faces):
+        sides = [str(face.side) for face in faces if (round(face.low, 1), round(face.high, 1)) == (low, high)]
+        ends = " and ".join(end for end, there in (("below", low > 0.0), ("above", high < round(width, 1))) if there)
+        notes.append(
+            f"the {' and '.join(sides)} flanks are worn from z = {low:.1f} to {high:.1f} mm, where the mate ran: {ends} they stand as they were made, and tell how"
+            " high they were cut"
+        )
+    return notes
+
+
+def edge_notes(wear: Wear) -> tuple[str, ...]:
+    """What is missing at the ends of flanks alone, and is not counted."""
+    if not wear.edges:
+        return ()
+    return (
+        f"{counted(wear.edges, 'flank')} with metal missing at an end of the face alone, {significant(1e3 * wear.edge_depth, 2)} µm at most: rounded or nicked"
+        " edges, not counted as wear",
+    )
+
+
+def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
+    """What the reader must know where something was stated of the scanner; `noise` is the scan's own, mm."""
+    notes = []
+    if stated.axis_offset is not None:
+        notes.append(
+            f"[scanner] axis_offset_mm = {stated.axis_offset:g} is not used: the effects of the table take its axis to be the gear's"
+        )
+    if stated.noise is not None and not 1.0 / UNLIKE < noise / stated.noise < UNLIKE:
+        scatter = f"points scatter by {significant(1e3 * noise, 2)} µm, the scanner by {significant(1e3 * stated.noise, 2)} µm as stated"
+        less = "the scan was smoothed or thinned, and neighbouring points share their errors"
+        more = "look for glare, focus and strays"
+        notes.append(f"{scatter}: {less if noise < stated.noise else more}")
+    return tuple(notes)
+
+
+def _off_reference(gear: Gear) -> tuple[str, ...]:
+    """Where thickness is measured, if not at the reference circle."""
+    if gear.thickness_radius == gear.reference_radius:
+        return ()
+    return (
+        f"the reference circle, ⌀ {2.0 * gear.reference_radius:.4g} mm, lies off the involute: tooth thickness is that at ⌀ {2.0 * gear.thickness_radius:.4g} mm",
+    )
+
+
+def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...]:
+    """Why there is no forecast, where one was asked for."""
+    if ahead is None:
+        return ()
+    if pair is None or pair.law is None:
+        return ("no forecast: the wear law needs a mate, and the design has one gear",)
+    return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)

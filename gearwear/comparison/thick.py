@@ -1,0 +1,100 @@
+"""How thick the teeth are: with what the scanner did taken out, against what was made, with what pooled sections hide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.comparison.consequences import Change, thickness_changes
+from gearwear.comparison.contributions import PutBack
+from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.diagnose.effects.base import MADE
+from gearwear.wear.hollows import find_hollows
+from gearwear.wear.regions import Wear
+from gearwear.wear.section_sums import SectionSums
+from gearwear.wear.thickness import SectionThickness, thickness_of
+from gearwear.wear.unmeasured import thinnest_unmeasured
+
+
+def thickness_and_changes(
+    measured: MeasuredGear, unworn: MeasuredGear | None, effects: Sequence[PutBack] | None, wear: Wear
+) -> tuple[SectionThickness, tuple[Change, ...]]:
+    """Section thickness, and what the effects change of it; nothing was taken out where they are None."""
+    sections = measured.sections
+    thickness = _with_hollows(corrected_thickness(measured, sections), measured, wear, sections)
+    if unworn is not None:
+        made_arc = corrected_thickness(unworn, unworn.sections).arc
+        thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
+    if effects is None:
+        return thickness, ()
+    raw = replace(corrected_thickness(measured, measured.raw_sections), hollows=thickness.hollows)
+    return thickness, thickness_changes(measured, effects, thickness, raw)
+
+
+def corrected_thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThickness:
+    """Section thickness with measurement effects taken out; the loss against the as-made gear."""
+    gear, loop = measured.gear, measured.loop
+    result = thickness_of(sections, measured.noise).without(_sections_gone(measured, sections))
+    if loop is None:
+        return result
+    turn = gear.arc_per_depth
+    step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
+    grid = measured.cells.grid
+    along = loop.covariance.row_step ** (step * (grid.rows - grid.groove_rows) / (gear.face_width - gear.spec.gap))
+    common = np.hypot(turn * sum(measured.level_std), turn * _unexplained(measured))
+    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), float(common))
+    tooth = np.repeat(np.arange(gear.teeth), len(result.z))
+    z = np.tile(result.z, gear.teeth)
+    roll = np.full(len(tooth), gear.thickness_roll)
+    flanks = [flank_points(gear, tooth, np.full(len(tooth), side), roll, z) for side in (1, -1)]
+
+    def arc(of: Callable[[SurfacePoints], Floats]) -> Floats:
+        return np.asarray(gear.arc_per_depth * np.sum([of(flank) for flank in flanks], axis=0).reshape(gear.teeth, -1))
+
+    other = [float(arc(partial(loop.as_other, effect)).mean()) for effect in loop.either]
+    untold = 0.0 if loop.untold is None else gear.arc_per_depth * loop.untold.level.sum(axis=1, keepdims=True)
+    # Between the places that were measured a tooth is as thin as it was made, and no thinner for what the scanner may have done.
+    return replace(
+        result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE)) + untold).made_with(arc(loop.surely_made) + untold),
+        otherwise=(sum(min(change, 0.0) for change in other), sum(max(change, 0.0) for change in other)),
+    )  # fmt: skip
+
+
+def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear, sections: SectionSums) -> SectionThickness:
+    """The same measurement with what pooled sections of worn teeth hide, and how well is known how thick each was made."""
+    variance = np.tile(np.square(wear.apart), (len(thickness.arc), 1))
+    if measured.loop is not None and measured.loop.untold is not None:
+        variance += measured.loop.untold.level_std**2
+    thickness = replace(thickness, made_std=thickness.turn * np.sqrt(variance.sum(axis=1)))
+    if measured.planar:
+        return thickness
+    corrected = measured.corrected
+    cells = corrected.with_deviation(corrected.points.deviation - measured.manufacture)
+    told = thickness.as_made, measured.noise, measured.loop
+    hollows = find_hollows(cells, wear.mask, measured.worn_sides, thickness.widths, sections, *told)
+    return replace(thickness, hollows=hollows, unmeasured=thinnest_unmeasured(thickness, wear, cells.grid, sections.band.reach))
+
+
+def _sections_gone(measured: MeasuredGear, sections: SectionSums) -> Bools:
+    """(teeth, n_z) sections in which a tooth is broken off at the radius that is measured: what is left of its flank there is the edge of the fracture."""
+    grid, heights = measured.cells.grid, sections.band.heights
+    column = grid.fillet + int(grid.flank_column(sections.band.reach))
+    row = np.clip(grid.place_of(heights).astype(np.int64), 0, grid.rows - 1)
+    gone = np.asarray(measured.gone[:, :, :, column].any(axis=1), dtype=np.bool_)
+    return gone[:, row]
+
+
+def _unexplained(measured: MeasuredGear) -> float:
+    """What the patterns that no effect explains add up to on both sides of a tooth where its thickness is measured, RMS over the gear, mm: whether they are
+    the part's is not known."""
+    grid, loop = measured.cells.grid, measured.loop
+    if loop is None or not loop.patterns:
+        return 0.0
+    column = int(grid.flank_column(grid.gear.thickness_roll))
+    field = np.sum([grid.flank_shape(pattern.field) for pattern in loop.patterns], axis=0)
+    return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
