@@ -180,7 +180,7 @@ def _on_path(run: Passes, advance: Floats, passes: int) -> Floats:
 def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tuple[Floats | Ints, ...]:
     """Advance and lengths of roll (p, m, s), and teeth without end (p, m), of passes `first` to `stop`; what the advance of others is more."""
     block = run.block(first, stop)
-    contact = run.contact(run.side, block.tooth, block.angles)
+    contact = run.contact(run.side, block)
     advance, radius, mate_radius = map(block.by_position, (contact.advance, contact.radius, contact.mate_radius))
     rolls = _roll(radius, run.driver.gear.base_radius), _roll(mate_radius, run.driven.gear.base_radius)
     shifts = run.shifts(others, run.side, block.tooth, contact)

@@ -143,18 +143,22 @@ def mesh_contact(
     size = run.passes_at_a_time()
     blocks: list[Positions] = []
     for first in range(0, passes, size):
-        block, touching = run.positions(first, min(first + size, passes), max(tolerances), others)
+        block, touching = run.positions(run.block(first, min(first + size, passes)), max(tolerances), others)
         blocks.append(block)
         pattern = [whole.touched(*part) for whole, part in zip(pattern, touching, strict=True)]
     got = Positions.joined(blocks)
-    closing, _ = run.positions(passes, passes + 1, 0.0)  # its first position ends the last interval of the contact ratio
-    advance = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:1, None] - closing.gap[:1]])
     passing = run.tooth(np.arange(passes), 0)
 
     nominal, lean = -0.5 * transverse_backlash(gear, mate, centre_distance), gear.base_helix_cosine
     asked = [(got.ahead, -1, False), (got.ahead + got.behind, 1, True), (got.ahead + got.behind, -1, True), (got.ahead, 1, False)]
     least, tightest, loosest, most = _extremes(run, asked)
-    peak, peak_rotation = _at(run, others, (least, most, tightest, loosest))
+    peak_rotation = np.unique([extreme.rotation for extreme in (least, most, tightest, loosest)])
+    at, size = peak_rotation / gear.pitch_angle, run.searches_at_a_time()
+    peak = Positions.joined([run.positions(run.places(at[i : i + size]), 0.0, others)[0] for i in range(0, len(at), size)])
+    closing, _ = run.positions(
+        run.places(np.array([passes], dtype=np.float64)), 0.0
+    )  # ends the last interval of the contact ratio
+    advance = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:, None] - closing.gap])
     return ContactResult(
         rotation=np.arange(passes * n) / n * gear.pitch_angle,
         transmission_error=got.ahead - nominal,
@@ -196,18 +200,6 @@ def _check_variants(
         for base, other in zip((driver, driven), pair, strict=True):
             if not (np.array_equal(base.radius, other.radius) and np.array_equal(base.z, other.z)):
                 raise InputError("a variant has other radii or heights than the gear itself: the same would be right")
-
-
-def _at(run: Passes, others: Sequence[Passes], extremes: Sequence[Extreme]) -> tuple[Positions, Floats]:
-    """What happens at the extremes, in the order of rotation; and the rotation, rad."""
-    pitch = run.driver.gear.pitch_angle
-    rotation = np.unique([extreme.rotation for extreme in extremes])
-    single, blocks = replace(run, n=1), []
-    for place in rotation / pitch:
-        passing = int(place)
-        block, _ = single.positions(passing, passing + 1, 0.0, [replace(other, n=1) for other in others], place - passing)
-        blocks.append(block)
-    return Positions.joined(blocks), rotation
 
 
 def _extremes(run: Passes, asked: Sequence[tuple[Floats, int, bool]]) -> list[Extreme]:

@@ -72,13 +72,49 @@ class PassBlock:
     near: Ints
     slices: int
 
+    @property
+    def passes(self) -> int:
+        return len(self.tooth) - int(self.near.shape[1]) + 1
+
     def by_position(self, values: Floats) -> Floats:
         """(angles, teeth · slices) to (positions, columns, slices)."""
         positions, m = self.near.shape
-        n, passes = len(self.angles) // m, len(self.tooth) - m + 1
+        n, passes = len(self.angles) // m, self.passes
         cube = values.reshape(m * n, len(self.tooth), self.slices)
         picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + passes] for c in range(m)]
         return np.stack(picked, axis=2).swapaxes(0, 1).reshape(positions, m, self.slices)
+
+    def picked(self) -> tuple[Ints, Ints] | None:
+        """Of the rows teeth · slices, the first that `by_position` picks at each angle, and the one behind the last, (angles,): in few passes most are not."""
+        m = self.near.shape[1]
+        first = self.slices * np.repeat(np.arange(m)[::-1], len(self.angles) // m)
+        return first, first + self.slices * self.passes
+
+    @property
+    def parts(self) -> int:
+        """Equal parts of the rows that stand at angles of their own: one, all teeth go through the same."""
+        return 1
+
+
+@dataclass(frozen=True, slots=True)
+class PassPlaces:
+    """Positions anywhere, as a `PassBlock` of which all is picked: for each position and column (p · m) a tooth, and one angle at which it stands."""
+
+    tooth: Ints
+    angles: Floats
+    near: Ints
+    slices: int
+
+    def by_position(self, values: Floats) -> Floats:
+        """(1, teeth · slices) to (positions, columns, slices)."""
+        return values.reshape(*self.near.shape, self.slices)
+
+    def picked(self) -> None:
+        """All rows."""
+
+    @property
+    def parts(self) -> int:
+        return len(self.tooth)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,15 +167,22 @@ class Passes:
         reach /= self.driver.gear.pitch_angle
         return np.arange(math.floor(-reach), math.floor(reach) + 1)
 
-    def block(self, first: int, stop: int, start: float = 0.0) -> PassBlock:
-        """Passes `first` to `stop`, whose first position is `start` pitches after the beginning of a pass."""
+    def block(self, first: int, stop: int) -> PassBlock:
+        """Passes `first` to `stop`."""
         n, columns = self.n, self.columns()
         return PassBlock(
             self.tooth(np.arange(first - columns[-1], stop - columns[0]), 0),
-            (columns[0] + start + np.arange(len(columns) * n) / n) * self.driver.gear.pitch_angle,
+            (columns[0] + np.arange(len(columns) * n) / n) * self.driver.gear.pitch_angle,
             self.tooth(np.repeat(np.arange(first, stop), n)[:, None], columns[None, :]),
             len(self.driver.z),
         )
+
+    def places(self, at: Floats) -> PassPlaces:
+        """Positions `at` (p,), pitches from the start of the cycle."""
+        passing, columns = at.astype(np.int64), self.columns()
+        near = self.tooth(passing[:, None], columns[None, :])
+        angles = (columns[0] + (at - passing)[:, None] + np.arange(len(columns))) * self.driver.gear.pitch_angle
+        return PassPlaces(near.ravel(), angles.reshape(1, -1), near, len(self.driver.z))
 
     def passes_at_a_time(self) -> int:
         """Passes whose tables and results fit in the memory set aside."""
@@ -169,13 +212,14 @@ class Passes:
         rows = len(tooth) * len(driver.z), -1
         return Flanks(driver.gear, driver.radius, excess.reshape(rows)), Flanks(driven.gear, driven.radius, other.reshape(rows))
 
-    def contact(self, side: Side, tooth: Ints, angles: Floats) -> PairContact:
-        """Where they touch when the teeth stand at each angle (rad, in the sense in which the flank faces) at mid-face."""
+    def contact(self, side: Side, block: PassBlock | PassPlaces) -> PairContact:
+        """Where flanks `side` touch, the driver's teeth at the angles of the block at mid-face."""
         ahead = side * self.phase if self.phase.any() else None
-        return ToothPairs.of(*self.flanks(side, tooth), self.centre, ahead).contact(angles)
+        angles = block.angles if side == self.side else -block.angles  # in the sense in which the flank faces
+        return ToothPairs.of(*self.flanks(side, block.tooth), self.centre, ahead, block.parts).contact(angles, block.picked())
 
     def searches_at_a_time(self) -> int:
-        """Places about which both sides' tables fit in the memory set aside."""
+        """PassPlaces about which both sides' tables fit in the memory set aside."""
         row = 8.0 * (2 * (SAMPLES + len(self.driver.radius)) + NODES)
         return max(1, int(_BLOCK_BYTES / (2 * row * len(self.columns()) * len(self.driver.z))))
 
@@ -229,15 +273,10 @@ class Passes:
             yield np.where(touching, change, 0.0)
 
     def positions(
-        self, first: int, stop: int, tolerance: float, variants: Sequence[Passes] = (), start: float = 0.0
+        self, block: PassBlock | PassPlaces, tolerance: float, variants: Sequence[Passes] = ()
     ) -> tuple[Positions, tuple[tuple[Ints, Ints, Floats], ...]]:
-        """Passes `first` to `stop`; for both gears tooth, slice and radius of every point within `tolerance` (mm).
-
-        The first position of a pass is `start` pitches after its beginning.
-        """
-        block = self.block(first, stop, start)
-        drive = self.contact(self.side, block.tooth, block.angles)
-        coast = self.contact(self.side.opposite, block.tooth, -block.angles)
+        """The positions of the block; for both gears tooth, slice and radius of every point within `tolerance` (mm)."""
+        drive, coast = self.contact(self.side, block), self.contact(self.side.opposite, block)
         advance, radius, mate_radius = map(block.by_position, (drive.advance, drive.radius, drive.mate_radius))
         each_half = self.furthest(advance)
         ahead, behind = each_half.mean(axis=0), self.furthest(block.by_position(coast.advance)).mean(axis=0)

@@ -11,7 +11,7 @@ difference that runs linearly between the given radii. A perfect pair is therefo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
@@ -19,7 +19,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.processors import threads
@@ -38,6 +38,9 @@ HALVINGS = 14
 
 _CELLS = 16384
 """Array elements worked on at a time: small enough to stay in the cache."""
+
+_NEEDLESS = 2000
+"""Array elements that are as much work as one more call."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +167,7 @@ class ToothPairs:
         """Radius of the driven tip corner, mm."""
         return tip_corner(self.driven)
 
-    def contact(self, angles: Floats) -> PairContact:
+    def contact(self, angles: Floats, wanted: tuple[Ints, Ints] | None = None) -> PairContact:
         """Where each pair touches when the driver's tooth stands at each angle.
 
         Parameters
@@ -172,6 +175,8 @@ class ToothPairs:
         angles : (n_a,) or (n_a, parts) float
             Angle in rad from the line of centres to the driver tooth's centre line, in the sense in which the
             flank faces, of all rows or of each part of them; `ahead` is added.
+        wanted : ((n_a,) int, (n_a,) int) or None
+            First row that is wanted at each angle, and the one behind the last, where rows are all of one part; the others are left out of reach.
 
         Returns
         -------
@@ -194,9 +199,14 @@ class ToothPairs:
         radius, mate_radius = np.full((2, count, rows), np.nan)
 
         first, behind = self._within_reach(standing)
+        begin, end = (np.zeros(count, np.intp), np.full(count, rows)) if wanted is None else wanted
 
-        def look(at: int) -> None:
-            self._look(standing[at], first[at], behind[at], best[at], entry[at])
+        def look(looks: list[_Look]) -> None:
+            at, row = (np.concatenate(one) for one in zip(*(one.pairs() for one in looks), strict=True))
+            part = row // (rows // parts)
+            samples = slice(min(one.first for one in looks), max(one.behind for one in looks))
+            angle = standing[at, part, row % groups, None]
+            best[at, row], entry[at, row] = self._look(row, samples, np.cos(angle), np.sin(angle))
 
         def search(chunk: Index) -> None:
             row = chunk % rows
@@ -213,7 +223,7 @@ class ToothPairs:
             advance.ravel()[chunk] = mate.base_radius * (value - centred)
             radius.ravel()[chunk], mate_radius.ravel()[chunk] = r, rho
 
-        _parallel(look, np.flatnonzero((behind > first).any(axis=1)).tolist(), at_once=rows * len(self.radius) >= _CELLS)
+        _parallel(look, _together(_looks(first, behind, begin, end, rows // parts)), at_once=rows * len(self.radius) >= _CELLS)
         reached = np.flatnonzero(best.ravel() >= 0)
         _parallel(search, [reached[i : i + _CELLS] for i in range(0, len(reached), _CELLS)])
         return PairContact(advance, radius, mate_radius)
@@ -221,44 +231,33 @@ class ToothPairs:
     def _within_reach(self, angles: Floats) -> tuple[Index, Index]:
         """Number of the first sample that may be inside the driven tip circle, and of the one behind the last: (angles, parts); equal where there is none.
 
-        The driver's tooth of row i stands at angle i modulo g of its part of `angles` (angles, parts, g), rad.
+        The driver's tooth of row i stands at angle i modulo g of its part of `angles` (angles, parts, g), rad; between the least and the greatest of
+        the g all is within reach.
         """
         # Below this cosine a point at radius r lies outside the driven tip circle, or inside that of a ring; less by what rounding can be.
         centre = self.centre  # signed
         least_cosine = (centre**2 + self.radius**2 - self.tip**2) / (2.0 * centre * self.radius) - 1e-14
         reach = np.where(least_cosine <= 1.0, np.arccos(np.minimum(np.maximum(least_cosine, 0.0), 1.0)), -np.inf)
-        low, high = (-reach - self.span[1])[:, None], (reach - self.span[0])[:, None]
+        low, high = -reach - self.span[1], reach - self.span[0]
+        least, most = angles.min(axis=2)[..., None], angles.max(axis=2)[..., None]
         first, behind = np.zeros((2, *angles.shape[:2]), np.intp)
-        block = max(1, 4 * _CELLS // (angles[0].size * len(self.radius)))
+        block = max(1, 4 * _CELLS // (angles.shape[1] * len(self.radius)))
         for at in range(0, len(angles), block):
-            standing = angles[at : at + block, :, :, None]
-            inside: Bools = np.any((standing >= low) & (standing <= high), axis=2)
+            inside: Bools = (most[at : at + block] >= low) & (least[at : at + block] <= high)
             some = inside.any(axis=2)
             # One sample more at the low end, to see where the flank enters.
             first[at : at + block] = np.maximum(inside.argmax(axis=2) - 1, 0) * some
             behind[at : at + block] = (len(self.radius) - inside[..., ::-1].argmax(axis=2)) * some
         return first, behind
 
-    def _look(self, angles: Floats, first: Index, behind: Index, best: Index, entry: Index) -> None:
-        """Number of the best sample, and of the first one inside the driven tip circle, for all rows, (rows,); −1 is none.
+    def _look(self, rows: Index, samples: slice, cos: Floats, sin: Floats) -> tuple[Index, Index]:
+        """Number of the best sample, and of the first one inside the driven tip circle, of some rows among some samples, (rows,); −1 is none.
 
-        The driver's tooth of row i stands at angle i modulo g of its part of `angles` (parts, g), rad; samples from `first` to before `behind` (parts,).
+        Cosine and sine (rows, 1) are those of the angles at which the driver's teeth stand.
         """
-        size, row = len(best) // len(first), np.arange(len(best))
-        cos, sin = (of(angles)[row // size, row % angles.shape[1], None] for of in (np.cos, np.sin))
-        for number, (start, stop) in enumerate(zip(first.tolist(), behind.tolist(), strict=True)):
-            if start == stop:
-                continue
-            step, end = max(1, _CELLS // (stop - start)), (number + 1) * size
-            for at in range(number * size, end, step):
-                part = slice(at, min(at + step, end))
-                best[part], entry[part] = self._look_at(part, slice(start, stop), cos[part], sin[part])
-
-    def _look_at(self, rows: slice, samples: slice, cos: Floats, sin: Floats) -> tuple[Index, Index]:
-        """The same of some rows among some samples; cosine and sine (rows, 1) of the angles at which the driver's teeth stand."""
         start, centre = samples.start, self.centre
         per_node = (NODES - 1) / (self.tip**2 - self.deepest)
-        x, y = self.x[rows, samples], self.y[rows, samples]
+        x, y = self.x[:, samples][rows], self.y[:, samples][rows]
         across = cos * x  # in place from here on: most of the time was to fetch memory for what is thrown away
         across -= sin * y
         place = (2.0 * centre) * across
@@ -270,7 +269,7 @@ class ToothPairs:
         np.floor(np.minimum(whole, NODES - 2, out=whole), out=whole)
         place -= whole
         node = whole.astype(np.intp)
-        node += NODES * np.arange(rows.start, rows.stop)[:, None]
+        node += NODES * rows[:, None]
         flat = self.table.ravel()
         value = flat.take(node)
         node += 1
@@ -285,7 +284,7 @@ class ToothPairs:
         value += np.arctan(turn, out=turn)
         np.copyto(value, -np.inf, where=~within)
         met, enters = within.any(axis=1), within.argmax(axis=1)
-        return np.where(met, start + value.argmax(axis=1), -1), np.where(met & (enters > 0), start + enters, -1)
+        return np.where(met, start + value.argmax(axis=1), -1), np.where(met & (start + enters > 0), start + enters, -1)
 
     def _push(self, row: Index, angle: Floats, radius: Floats) -> tuple[Floats, Floats]:
         """β + w(ρ) in rad and ρ in mm for driver points of the given radius; exact."""
@@ -333,6 +332,49 @@ class ToothPairs:
         beta = np.arctan2(now * np.sin(theta), self.centre_distance - orientation * now * np.cos(theta))
         rho = np.full_like(now, self.tip)
         return beta + self.driven.half_angle(row, rho), now, rho
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """Rows `row` to before `end` at angle number `at`, at samples from `first` to before `behind`."""
+
+    at: int
+    row: int
+    end: int
+    first: int
+    behind: int
+
+    def pairs(self) -> tuple[Index, Index]:
+        """Number of the angle, and the row, of each row."""
+        row = np.arange(self.row, self.end)
+        return np.full(len(row), self.at), row
+
+
+def _looks(first: Index, behind: Index, begin: Ints, end: Ints, size: int) -> Iterator[_Look]:
+    """What is to be looked at, angle by angle and part by part, in pieces of at most `_CELLS`: parts of `size` rows, samples from `first` to before
+    `behind` (angles, parts), rows from `begin` to before `end` (angles,)."""
+    for at, part in np.argwhere(behind > first).tolist():
+        start, stop = int(first[at, part]), int(behind[at, part])
+        step, last = max(1, _CELLS // (stop - start)), min((part + 1) * size, int(end[at]))
+        for row in range(max(part * size, int(begin[at])), last, step):
+            yield _Look(at, row, min(row + step, last), start, stop)
+
+
+def _together(looks: Iterable[_Look]) -> list[list[_Look]]:
+    """Looks one after the other, joined as long as they are few and much alike: a call for each would take longer than what it does."""
+    joined: list[list[_Look]] = []
+    rows = first = behind = 0
+    for look in looks:
+        more, wide = look.end - look.row, look.behind - look.first
+        low, high = min(first, look.first), max(behind, look.behind)
+        needless = (high - low - (behind - first)) * rows + (high - low - wide) * more
+        if joined and needless < _NEEDLESS and (rows + more) * (high - low) <= _CELLS:
+            joined[-1].append(look)
+            rows, first, behind = rows + more, low, high
+        else:
+            joined.append([look])
+            rows, first, behind = more, look.first, look.behind
+    return joined
 
 
 def _parallel(work: Callable[[T], None], items: Sequence[T], at_once: bool = True) -> None:
