@@ -117,16 +117,7 @@ def mesh_contact(
     >>> [round(float(um), 3) + 0.0 for um in (result.transmission_error_um.min(), result.peak_to_peak_um)]
     [-100.0, 0.0]
     """
-    check_number("centre_distance", centre_distance, "mm")
-    check_whole("positions_per_pitch", positions_per_pitch, 1)
-    check_whole("start_tooth", start_tooth)
-    check_choice("cycle", cycle, CYCLES)
-    if not isinstance(tolerances, Sequence) or not tolerances:
-        raise InputError(f"tolerances {shown(tolerances)}: a sequence of one or more would be right")
-    for tolerance in tolerances:
-        check_number("tolerances", tolerance, "mm")
-        if not 0.0 <= tolerance < math.inf:
-            raise InputError(f"tolerances {tolerances}: none below 0 or without end would be right")
+    _check_turning(centre_distance, positions_per_pitch, start_tooth, cycle, tolerances)
     check_contact(driver, driven, centre_distance)
     _check_variants(driver, driven, variants)
     drive_side = Side.of(drive_side)
@@ -134,31 +125,14 @@ def mesh_contact(
     passes = pitches(cycle, gear, mate)
     slices = Slices.of(driver, driven)
     run = Passes.of(*slices.cut(driver, driven), centre_distance, drive_side, n, start_tooth)
-    others = []
-    for pair in variants:
-        one, mate_of_it = slices.cut(*pair)
-        same, same_mate = pair[0] is driver, pair[1] is driven
-        others.append(replace(run, driver=run.driver if same else one, driven=run.driven if same_mate else mate_of_it))
-    pattern = [ContactPattern.empty(member.gear, member.z, n) for member in (run.driver, run.driven)]
-    size = run.passes_at_a_time()
-    blocks: list[Positions] = []
-    for first in range(0, passes, size):
-        block, touching = run.positions(run.block(first, min(first + size, passes)), max(tolerances), others)
-        blocks.append(block)
-        pattern = [whole.touched(*part) for whole, part in zip(pattern, touching, strict=True)]
-    got = Positions.joined(blocks)
+    others = [_instead(run, slices, (driver, driven), pair) for pair in variants]
+    got, patterns, advance = _turned(run, others, passes, max(tolerances))
     passing = run.tooth(np.arange(passes), 0)
 
     nominal, lean = -0.5 * transverse_backlash(gear, mate, centre_distance), gear.base_helix_cosine
     asked = [(got.ahead, -1, False), (got.ahead + got.behind, 1, True), (got.ahead + got.behind, -1, True), (got.ahead, 1, False)]
     least, tightest, loosest, most = _extremes(run, asked)
-    peak_rotation = np.unique([extreme.rotation for extreme in (least, most, tightest, loosest)])
-    at, size = peak_rotation / gear.pitch_angle, run.searches_at_a_time()
-    peak = Positions.joined([run.positions(run.places(at[i : i + size]), 0.0, others)[0] for i in range(0, len(at), size)])
-    closing, _ = run.positions(
-        run.places(np.array([passes], dtype=np.float64)), 0.0
-    )  # ends the last interval of the contact ratio
-    advance = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:, None] - closing.gap])
+    peak, peak_rotation = _at(run, others, (least, most, tightest, loosest))
     return ContactResult(
         rotation=np.arange(passes * n) / n * gear.pitch_angle,
         transmission_error=got.ahead - nominal,
@@ -176,8 +150,8 @@ def mesh_contact(
         pair_driven_tooth=run.mate(got.tooth) % mate.teeth,
         pair_gap=got.gap,
         contact_ratio=tuple((t, _contact_ratio(advance, n, t)) for t in tolerances),
-        driver_pattern=pattern[0].passed(passing),
-        driven_pattern=pattern[1].passed(run.mate(passing)),
+        driver_pattern=patterns[0].passed(passing),
+        driven_pattern=patterns[1].passed(run.mate(passing)),
         driver=gear,
         driven=mate,
         peak_rotation=peak_rotation,
@@ -193,6 +167,22 @@ def mesh_contact(
     )
 
 
+def _check_turning(
+    centre_distance: float, positions_per_pitch: int, start_tooth: int, cycle: Cycle, tolerances: tuple[float, ...]
+) -> None:
+    """Refuse what is no number, whole number, cycle or list of tolerances."""
+    check_number("centre_distance", centre_distance, "mm")
+    check_whole("positions_per_pitch", positions_per_pitch, 1)
+    check_whole("start_tooth", start_tooth)
+    check_choice("cycle", cycle, CYCLES)
+    if not isinstance(tolerances, Sequence) or not tolerances:
+        raise InputError(f"tolerances {shown(tolerances)}: a sequence of one or more would be right")
+    for tolerance in tolerances:
+        check_number("tolerances", tolerance, "mm")
+        if not 0.0 <= tolerance < math.inf:
+            raise InputError(f"tolerances {tolerances}: none below 0 or without end would be right")
+
+
 def _check_variants(
     driver: ToothProfiles, driven: ToothProfiles, variants: Sequence[tuple[ToothProfiles, ToothProfiles]]
 ) -> None:
@@ -200,6 +190,40 @@ def _check_variants(
         for base, other in zip((driver, driven), pair, strict=True):
             if not (np.array_equal(base.radius, other.radius) and np.array_equal(base.z, other.z)):
                 raise InputError("a variant has other radii or heights than the gear itself: the same would be right")
+
+
+def _instead(
+    run: Passes, slices: Slices, base: tuple[ToothProfiles, ToothProfiles], pair: tuple[ToothProfiles, ToothProfiles]
+) -> Passes:
+    """A variant in place of the pair itself; a gear that they share is the one object, which tells that nothing differs."""
+    driver, driven = slices.cut(*pair)
+    same, same_mate = (other is own for other, own in zip(pair, base, strict=True))
+    return replace(run, driver=run.driver if same else driver, driven=run.driven if same_mate else driven)
+
+
+def _turned(
+    run: Passes, others: Sequence[Passes], passes: int, tolerance: float
+) -> tuple[Positions, list[ContactPattern], Floats]:
+    """A cycle in blocks that fit in memory: its positions, the patterns of both gears at `tolerance`, mm, and the advance of each pair (positions,
+    columns), mm, with the position that ends the last interval of the contact ratio."""
+    patterns = [ContactPattern.empty(member.gear, member.z, run.n) for member in (run.driver, run.driven)]
+    size = run.passes_at_a_time()
+    blocks: list[Positions] = []
+    for first in range(0, passes, size):
+        block, touching = run.positions(run.block(first, min(first + size, passes)), tolerance, others)
+        blocks.append(block)
+        patterns = [whole.touched(*part) for whole, part in zip(patterns, touching, strict=True)]
+    got = Positions.joined(blocks)
+    closing, _ = run.positions(run.places(np.array([passes], dtype=np.float64)), 0.0)
+    return got, patterns, np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:, None] - closing.gap])
+
+
+def _at(run: Passes, others: Sequence[Passes], extremes: Sequence[Extreme]) -> tuple[Positions, Floats]:
+    """What happens at the extremes, in the order of rotation; and the rotation, rad."""
+    rotation = np.unique([extreme.rotation for extreme in extremes])
+    places, size = rotation / run.driver.gear.pitch_angle, run.searches_at_a_time()
+    blocks = [run.positions(run.places(places[i : i + size]), 0.0, others)[0] for i in range(0, len(places), size)]
+    return Positions.joined(blocks), rotation
 
 
 def _extremes(run: Passes, asked: Sequence[tuple[Floats, int, bool]]) -> list[Extreme]:
