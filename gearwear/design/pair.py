@@ -118,6 +118,30 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         If the base pitches differ, the base circles meet, tips bottom out, teeth jam, the path of contact is
         empty, or a tip digs into the mate's root fillet.
     """
+    _check_toothing(pinion, gear)
+    orientation = gear.orientation
+    standard = abs(pinion.reference_radius + orientation * gear.reference_radius)
+    centre = standard if pair.centre_distance is None else pair.centre_distance
+    play, line = _check_distance(pinion, gear, centre)
+    start, end = path_ends(pinion, gear, line)
+    if end <= start:
+        raise InputError(
+            f"[pair] centre_distance = {as_given(centre)} mm: the gears do not reach each other, the path of contact is empty"
+        )
+    warnings = []
+    ratio = (end - start) / pinion.base_pitch + overlap_ratio(pinion, gear)
+    if ratio < 1.0:
+        warnings.append(f"contact ratio {ratio:.3f} is below 1: the drive is not continuous")
+    if gear.spec.internal:
+        warnings += inside_ring(pinion, gear, centre, play)
+    for part, member, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
+        warnings += _tip_in_root(part, member, mate, centre)
+        warnings += _tip_off_involute(part, member, mate, line)
+    return tuple(warnings)
+
+
+def _check_toothing(pinion: Gear, gear: Gear) -> None:
+    """Refuse teeth that do not go together at any centre distance."""
     p, g, orientation = pinion.spec, gear.spec, gear.orientation
     if p.internal:
         raise InputError("[pinion] internal = true: the ring of a pair is its [gear]; the two the other way round would be right")
@@ -139,76 +163,71 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         raise InputError(
             f"[gear] module {g.normal_module:g} mm and pressure angle {math.degrees(g.normal_pressure_angle):g}° do not mesh with the pinion's {p.normal_module:g} mm and {math.degrees(p.normal_pressure_angle):g}°: base pitches {' and '.join(pitches)} mm must be equal"
         )
-    standard = abs(pinion.reference_radius + orientation * gear.reference_radius)
-    centre = standard if pair.centre_distance is None else pair.centre_distance
+
+
+def _check_distance(pinion: Gear, gear: Gear, centre: float) -> tuple[float, float]:
+    """Refuse a centre distance (mm) at which base circles meet, tips bottom out or teeth jam; circumferential backlash there, and the distance of
+    the two points where the line of action touches the base circles (of a ring below 0), mm."""
+    internal, orientation = gear.spec.internal, gear.orientation
     bases = base_radius_sum(pinion, gear)
     if not centre > abs(bases):
-        relation = "difference" if g.internal else "sum"
+        relation = "difference" if internal else "sum"
         raise InputError(
             f"[pair] centre_distance = {as_given(centre)} mm: must be above the {relation} of the base radii, {at_least(abs(bases))} mm"
         )
     for part, clearance in zip(("pinion", "gear"), tip_clearances(pinion, gear, centre), strict=True):
         if clearance < -CENTRE_ROUNDING:
             limit = centre - orientation * clearance
-            bound = f"at most {at_most(limit)} mm is possible" if g.internal else f"at least {at_least(limit)} mm is needed"
+            bound = f"at most {at_most(limit)} mm is possible" if internal else f"at least {at_least(limit)} mm is needed"
             raise InputError(
                 f"[pair] centre_distance = {as_given(centre)} mm: the {part}'s tip digs {not_zero(-clearance)} mm into its mate's root; {bound}"
             )
-
     working = math.acos(abs(bases) / centre)
-    line = orientation * centre * math.sin(working)
     play = base_backlash(pinion, gear, working) / math.cos(working)
     tight = tight_involute(pinion, gear)
     without_play = abs(bases) / math.cos(inverse_involute(tight)) if tight >= 0.0 else math.inf
     # Of a ring whose teeth jam at every distance `tight` is negative; outside one no teeth jam then.
     if play < 0.0 and not abs(centre - without_play) <= CENTRE_ROUNDING:
-        remedy = f"a {'smaller' if g.internal else 'larger'} centre distance"
+        remedy = f"a {'smaller' if internal else 'larger'} centre distance"
         if math.isfinite(without_play):
-            remedy += f" ({f'at most {at_most(without_play)}' if g.internal else f'at least {at_least(without_play)}'} mm)"
+            remedy += f" ({f'at most {at_most(without_play)}' if internal else f'at least {at_least(without_play)}'} mm)"
         raise InputError(
             f"[pair] centre_distance = {as_given(centre)} mm: the teeth jam, backlash would be {not_zero(play)} mm; {remedy}, less profile_shift or more thinning is needed"
         )
-    start, end = path_ends(pinion, gear, line)
-    if end <= start:
+    return play, orientation * centre * math.sin(working)
+
+
+def _tip_in_root(part: str, member: Gear, mate: Gear, centre: float) -> list[str]:
+    """Refuse a mate whose tip digs into the root fillet of a gear; where that is assumed, a warning."""
+    depth = tip_penetration(member, mate, centre)
+    if not depth > 1e-6 * member.transverse_module:
+        return []
+    if member.root_stated:
+        remedy = "or a smaller root fillet" if member.spec.internal else "or a smaller rack_tip_radius"
         raise InputError(
-            f"[pair] centre_distance = {as_given(centre)} mm: the gears do not reach each other, the path of contact is empty"
+            f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {not_zero(depth)} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {remedy} of the {part} would clear it"
         )
-
-    warnings = []
-    ratio = (end - start) / pinion.base_pitch + overlap_ratio(pinion, gear)
-    if ratio < 1.0:
-        warnings.append(f"contact ratio {ratio:.3f} is below 1: the drive is not continuous")
-    if g.internal:
-        warnings += inside_ring(pinion, gear, centre, play)
-    for part, member, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
-        depth = tip_penetration(member, mate, centre)
-        if depth > 1e-6 * member.transverse_module and not member.root_stated:
-            warnings.append(
-                f"the mate's tip would dig {not_zero(depth)} mm into the {part}'s root fillet, as that is assumed; {FILLET_KEYS} would tell"
-            )
-        elif depth > 1e-6 * member.transverse_module:
-            raise InputError(
-                f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {not_zero(depth)} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {root_remedy(member)} of the {part} would clear it"
-            )
-        reached = reached_roll(member, mate, abs(line))
-        past = -reached
-        if past > 0.0:
-            limit = math.hypot(mate.base_radius, line)
-            undercut = "is undercut and " if member.undercut else ""
-            bound = "down to" if mate.spec.internal else "up to"
-            warnings.append(
-                f"the mate's tip passes the {part}'s interference point by {not_zero(past, 3)} mm of roll (no interference {bound} tip radius {(at_least if mate.spec.internal else at_most)(limit, 3)} mm); the {part} {undercut}clears it, but the path of contact ends at its form circle"
-            )
-        elif member.orientation * (reached - member.form_roll) < -1e-9:
-            warnings.append(
-                f"the mate's tip reaches {'beyond' if member.spec.internal else 'below'} the {part}'s form circle (radius {member.form_radius:.4f} mm): contact there is not conjugate"
-            )
-    return tuple(warnings)
+    return [
+        f"the mate's tip would dig {not_zero(depth)} mm into the {part}'s root fillet, as that is assumed; {FILLET_KEYS} would tell"
+    ]
 
 
-def root_remedy(member: Gear) -> str:
-    """What else would clear a root, besides depth."""
-    return "or a smaller root fillet" if member.spec.internal else "or a smaller rack_tip_radius"
+def _tip_off_involute(part: str, member: Gear, mate: Gear, line: float) -> list[str]:
+    """A warning where the mate's tip touches a gear where it has no involute."""
+    reached = reached_roll(member, mate, abs(line))
+    past = -reached
+    if past > 0.0:
+        limit = math.hypot(mate.base_radius, line)
+        undercut = "is undercut and " if member.undercut else ""
+        bound = "down to" if mate.spec.internal else "up to"
+        return [
+            f"the mate's tip passes the {part}'s interference point by {not_zero(past, 3)} mm of roll (no interference {bound} tip radius {(at_least if mate.spec.internal else at_most)(limit, 3)} mm); the {part} {undercut}clears it, but the path of contact ends at its form circle"
+        ]
+    if member.orientation * (reached - member.form_roll) < -1e-9:
+        return [
+            f"the mate's tip reaches {'beyond' if member.spec.internal else 'below'} the {part}'s form circle (radius {member.form_radius:.4f} mm): contact there is not conjugate"
+        ]
+    return []
 
 
 def base_radius_sum(pinion: Gear, gear: Gear) -> float:
