@@ -213,85 +213,138 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     """
     if len(points) < LEAST_POINTS:
         raise InputError(f"{len(points)} points are too few to find a gear in: at least {LEAST_POINTS} would be right")
-    plane = _best_plane(points, normals, planar)
-    parts = [plane] if planar else _parts(plane)
-    plane = parts[0]
-    flat, circle = plane.points[plane.sides, :2], plane.circle
-    height = None if planar else plane.points[plane.sides, 2] - plane.middle
-    notes = []
-    oval, direction = 0.0, 0.0
-    flank = plane.fit(flat, None) if planar else plane.flank
-    if circle.oval > OUT_OF_ROUND and not plane.twist:
-        # Tips that are nearly points may look oval; a scan that is stretched has better flanks without the stretch.
-        straight = circle.rounded(flat)
-        again = count_flat(straight, np.zeros(len(straight)), tip_circle(straight) or circle)
-        if again is not None:
-            rounded = replace(plane, circle=again[0], root=again[1], count=again[2])
-            better = rounded.fit(straight, height)
-            if better is not None and (flank is None or better.scatter < 0.8 * flank.scatter):
-                oval, direction = circle.oval, circle.direction
-                flat, plane, flank = straight, rounded, better
-                notes.append(
-                    f"the tips lie on an oval, {100 * oval:.2f} % longer along {math.degrees(direction) % 180:.0f}° than across: taken for the scan's own "
-                    "stretch and set aside"
-                )
+    best = _best_plane(points, normals, planar)
+    parts = [best] if planar else _parts(best)
+    even = _Even.of(parts[0], planar)
+    plane, flank = even.plane, even.flank
     flanks = [fit for fit in (flank, *(part.flank for part in parts[1:])) if fit is not None]
     if flank is None or len(flanks) < len(parts) or not all(_smooth(fit, plane) for fit in flanks):
         raise InputError(
             f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an involute gear is needed"
         )
+    notes = even.notes
     if flank.worn_side is not None:
-        notes.append(
-            "the flanks of one side are much rougher than the other's: taken for worn, the shape is that of the better side"
+        notes += (
+            "the flanks of one side are much rougher than the other's: taken for worn, the shape is that of the better side",
         )
-    radius, angle = replace(plane.circle, centre=flank.centre).polar(flat)
-    turned = angle - flank.phase - (0.0 if height is None else flank.twist * height)
-    turns = turned * (plane.count.teeth / (2.0 * math.pi))
-    toothed = radius > plane.root
-    number = np.bincount(np.mod(np.rint(turns[toothed]).astype(np.int64), plane.count.teeth), minlength=plane.count.teeth)
-    seen = int((number > 0.2 * np.median(number[number > 0])).sum())
-    tip, root, scatter = lands(radius, turns - np.rint(turns), flank, plane)
+    radius, turns = even.polar(flank)
+    seen = _teeth_seen(turns[radius > plane.root], plane.count.teeth)
     if seen < plane.count.teeth:
-        notes.append(f"{seen} of the {plane.count.teeth} teeth were seen: the tooth count rests on their pitch")
+        notes += (f"{seen} of the {plane.count.teeth} teeth were seen: the tooth count rests on their pitch",)
+    tip, root, scatter = lands(radius, turns - np.rint(turns), flank, plane)
     teeth = [
         Teeth(part.points, part.normals, fit, part.count.teeth, part.middle) for part, fit in zip(parts, flanks, strict=True)
     ]
     inward = not planar and points_inward(teeth, root, tip)
-    width, faces, low, gap = math.nan, 0, 0.0, 0.0
-    if not planar:
-        ends = face_ends(parts, plane.root)
-        width, faces, low = ends.width, ends.low_seen + ends.high_seen, ends.low
-        if faces < 2:
-            notes.append("not both end faces were seen: the face width is the height of what was seen")
-        if len(parts) == 2:
-            inside = 0.5 * (root + tip)  # the groove's bottom lies near the roots
-            halves = face_ends(parts[:1], inside), face_ends(parts[1:], inside)
-            gap = max(halves[1].low_edge - halves[0].high_edge, 0.0)
-            notes += _staggered(teeth, halves)
-    bore = 0.0 if planar or inward else bore_diameter(plane)
-    rim = rim_diameter(plane) if inward else 0.0
+    face = _Face() if planar else _Face.of(parts, plane.root, teeth, 0.5 * (root + tip))
     phase = flank.phase + (math.pi / plane.count.teeth if inward else 0.0)  # what was fitted as a tooth is the space of a ring
     cos, sin = math.cos(-phase), math.sin(-phase)
     spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    pose = Pose(spin @ plane.turn, spin @ -np.array([*flank.centre, low]))
     return Survey(
-        pose=pose,
+        pose=Pose(spin @ plane.turn, spin @ -np.array([*flank.centre, face.low])),
         teeth=plane.count.teeth,
         tip_radius=root if inward else tip,
         root_radius=tip if inward else root,
         flank=flank,
-        face_width=width,
-        faces=faces,
-        bore_diameter=bore,
-        circle=TipCircle(np.zeros(2), tip, oval, direction - phase),
+        face_width=face.width,
+        faces=face.ends,
+        bore_diameter=0.0 if planar or inward else bore_diameter(plane),
+        circle=TipCircle(np.zeros(2), tip, even.oval, even.direction - phase),
         share=plane.count.share,
-        notes=tuple(notes),
+        notes=(*notes, *face.notes),
         halves=tuple(flanks),
         internal=inward,
         root_scatter=scatter,
-        gap=gap,
-        rim_diameter=rim,
+        gap=face.gap,
+        rim_diameter=rim_diameter(plane) if inward else 0.0,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Even:
+    """A gear seen along its axis, with the scan's own stretch taken out where it has one.
+
+    Parameters
+    ----------
+    plane : Plane
+    flat : (n, 2) float
+        Tooth sides in the plane of rotation, mm.
+    height : (n,) float or None
+        Theirs, from the middle, mm; None of a planar section.
+    flank : FreeInvolute or None
+        The involute through them.
+    oval, direction : float
+        How much longer the scan was along a direction than across, and that, rad; 0 where nothing was taken out.
+    notes : tuple of str
+    """
+
+    plane: Plane
+    flat: Floats
+    height: Floats | None
+    flank: FreeInvolute | None
+    oval: float = 0.0
+    direction: float = 0.0
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, plane: Plane, planar: bool) -> _Even:
+        """Tips that are nearly points may look oval; a scan that is stretched has better flanks without the stretch."""
+        (flat, above), circle = plane.flat, plane.circle
+        height = None if planar else above
+        flank = plane.fit(flat, None) if planar else plane.flank
+        seen = cls(plane, flat, height, flank)
+        if circle.oval <= OUT_OF_ROUND or plane.twist:
+            return seen
+        straight = circle.rounded(flat)
+        again = count_flat(straight, np.zeros(len(straight)), tip_circle(straight) or circle)
+        if again is None:
+            return seen
+        rounded = replace(plane, circle=again[0], root=again[1], count=again[2])
+        better = rounded.fit(straight, height)
+        if better is None or not (flank is None or better.scatter < 0.8 * flank.scatter):
+            return seen
+        said = (
+            f"the tips lie on an oval, {100 * circle.oval:.2f} % longer along {math.degrees(circle.direction) % 180:.0f}° than across: taken for the scan's own "
+            "stretch and set aside"
+        )
+        return cls(rounded, straight, height, better, circle.oval, circle.direction, (said,))
+
+    def polar(self, flank: FreeInvolute) -> tuple[Floats, Floats]:
+        """Radius of every point about the flanks' centre, mm, and by how many pitches it stands off the first tooth."""
+        radius, angle = replace(self.plane.circle, centre=flank.centre).polar(self.flat)
+        turned = angle - flank.phase - (0.0 if self.height is None else flank.twist * self.height)
+        return radius, turned * (self.plane.count.teeth / (2.0 * math.pi))
+
+
+def _teeth_seen(turns: Floats, teeth: int) -> int:
+    """How many teeth have points, of points that stand so many pitches off the first."""
+    number = np.bincount(np.mod(np.rint(turns).astype(np.int64), teeth), minlength=teeth)
+    return int((number > 0.2 * np.median(number[number > 0])).sum())
+
+
+@dataclass(frozen=True, slots=True)
+class _Face:
+    """Width of the face, lower end and groove, mm; how many end faces were seen; what must be said. Of a planar section nothing is known."""
+
+    width: float = math.nan
+    low: float = 0.0
+    gap: float = 0.0
+    ends: int = 0
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, parts: Sequence[Plane], root: float, teeth: Sequence[Teeth], inside: float) -> _Face:
+        """Of a gear or the halves of one, with the radius of the roots; the groove's bottom lies near them, so halves end where they do at `inside`, mm."""
+        ends = face_ends(parts, root)
+        seen, gap = ends.low_seen + ends.high_seen, 0.0
+        notes: tuple[str, ...] = ()
+        if seen < 2:
+            notes = ("not both end faces were seen: the face width is the height of what was seen",)
+        if len(parts) == 2:
+            halves = face_ends(parts[:1], inside), face_ends(parts[1:], inside)
+            gap = max(halves[1].low_edge - halves[0].high_edge, 0.0)
+            notes += tuple(_staggered(teeth, halves))
+        return cls(ends.width, ends.low, gap, seen, notes)
 
 
 def _staggered(halves: Sequence[Teeth], ends: Sequence[FaceEnds]) -> list[str]:
