@@ -234,7 +234,7 @@ MUTATIONS = [
         ("inspection/grading.py", "not abs(value) - expanded > limit", "not abs(value) > limit", "inspection/test_limits.py"),
         ("inspection/correlation.py", "EVIDENCE = 3.0", "EVIDENCE = 30.0", "inspection/test_correlation.py"),
         ("inspection/correlation.py", "wide[0] + max(0.0, wide[0] - narrow[0])", "wide[0]", "inspection/test_limits.py"),
-        ("inspection/evaluation.py", "known] = np.sqrt((matrix**2) @", "known] = np.sqrt(np.abs(matrix) @", "inspection/test_evaluation.py"),
+        ("inspection/evaluation.py", "known] = np.sqrt((trace.matrix**2) @", "known] = np.sqrt(np.abs(trace.matrix) @", "inspection/test_evaluation.py"),
         ("inspection/evaluation.py", "LEAST_SHARE = 0.75", "LEAST_SHARE = 0.3", "inspection/test_evaluation.py"),
         ("inspection/prepared.py", "FINEST_CUTOFF = 1.0 / 500.0", "FINEST_CUTOFF = 1e-6", "inspection/test_settings.py"),
         ("inspection/prepared.py", "LONGEST_STATED = 10.0", "LONGEST_STATED = 100.0", "inspection/test_settings.py"),

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.inspection.estimate import DRAWS, Estimate, first_end, of_causes, with_sign_of
@@ -125,9 +125,8 @@ def evaluate(
     trace: their uncertainty is exact, from the bins' standard errors through filter and fit. For form and total see
     `estimate.of_causes`.
     """
-    reach = (min(where.start, traces.centre[0] - 0.5 * traces.step), max(where.outer, traces.centre[-1] + 0.5 * traces.step))
-    station, zone = stations(where, reach)
-    shape = traces.deviation.shape[:2]
+    over = _Over.of(traces, where, shared, common)
+    station, shape = over.station, traces.deviation.shape[:2]
     parts = {name: Estimate.empty(shape) for name in ("slope", "form", "total", "crowning")}
     caused = {} if shared is None else {name: np.full((*shape, shared.shape[-1]), np.nan) for name in parts}
     share = np.zeros(shape)
@@ -136,44 +135,24 @@ def evaluate(
     line_shared = None if shared is None else np.full((*shape, 2, shared.shape[-1]), np.nan)
     widest = where.cutoff
     shift, excess = np.full(shape, np.nan), Estimate.empty(shape)
-    rng = np.random.default_rng(0)
-    normal = rng.standard_normal((DRAWS, traces.deviation.shape[-1]))
-    motion = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
-    usual = np.zeros((2, len(station))) if common is None else np.stack([common.at(side, station)[0] for side in (0, 1)])
-    through = [_line(station, zone == INSIDE, where, form) for form in usual]
+    through = [_line(station, over.zone == INSIDE, where, form) for form in over.usual]
     for tooth, side in np.ndindex(*shape):
-        seen = traces.count[tooth, side] > 0
-        if seen.sum() < 3:
+        trace = over.filtered(tooth, side)
+        if trace is None:
             continue
-        x, error = traces.station[tooth, side, seen], traces.standard_error[tooth, side, seen]
-        weight = traces.count[tooth, side, seen].astype(float)
-        known, matrix, cutoff, steady = filter_samples(station, x, weight, where, traces.step)
-        share[tooth, side] = known[zone == INSIDE].mean()
-        if not known.any():
-            continue
-        trace = matrix @ (traces.deviation[tooth, side, seen] - np.interp(x, station, usual[side])) + usual[side, known]
-        filtered[tooth, side, known] = trace
-        standard[tooth, side, known] = np.sqrt((matrix**2) @ error**2)
-        moved = None if shared is None else matrix @ shared[tooth, side, seen]
-        way = first_end(traces.deviation[tooth, side]) if traces.along == "z" else 1
-        noise = (normal[:, ::way][:, seen] * error) @ matrix.T
-        if moved is not None and motion is not None:
-            noise += motion @ with_sign_of(trace, moved).T
+        share[tooth, side] = trace.known[over.zone == INSIDE].mean()
+        filtered[tooth, side, trace.known] = trace.trace
+        standard[tooth, side, trace.known] = np.sqrt((trace.matrix**2) @ trace.error**2)
         band = bands[side]
         limited = None if band is None else band.covers(station)
-        if band is not None and limited is not None and limited.any() and known[limited].mean() >= LEAST_SHARE:
-            inside = limited[known] & steady
-            shift[tooth, side], estimate = fit_band(band, station[known][inside], trace[inside], noise[:, inside])
+        if band is not None and limited is not None and limited.any() and trace.known[limited].mean() >= LEAST_SHARE:
+            inside = limited[trace.known] & trace.steady
+            shift[tooth, side], estimate = fit_band(band, trace.station[inside], trace.trace[inside], trace.noise[:, inside])
             _put(excess, estimate, tooth, side)
         if share[tooth, side] < LEAST_SHARE:
             continue
-        widest = max(widest, float(cutoff.max()))
-        counted = zone[known] != SHOWN
-        inside = zone[known][counted] == INSIDE
-        deviations = _deviations(
-            station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error,
-            None if moved is None else moved[counted], usual[side, known][counted], through[side],
-        )  # fmt: skip
+        widest = max(widest, trace.cutoff)
+        deviations = _deviations(trace.counted, where, through[side])
         ends = deviations.pop("middle"), deviations["slope"]
         line[tooth, side] = [end.value for end in ends]
         if line_shared is not None:
@@ -201,6 +180,102 @@ def evaluate(
         k=None if bands == (None, None) else KFit(bands, shift, excess),
         line_shared=line_shared,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Trace:
+    """One trace through the filter, at n of the stations.
+
+    Parameters
+    ----------
+    known : (stations,) bool
+        Those of all stations that it is known at.
+    station, zone : (n,)
+        Of these: place in mm, and which part of the flank it is.
+    trace : (n,) float
+        Deviation, mm.
+    steady : (n,) bool
+        Where the filter's window is not cut off.
+    matrix : (n, bins) float
+        The filter.
+    error : (bins,) float
+        Standard error of the bins, mm.
+    noise : (draws, n) float
+        Simulated errors of the trace, mm.
+    moved : (n, m) float or None
+        What one standard deviation of each cause that bins have in common does to it, mm.
+    usual : (n,) float
+        Form common to its side, mm.
+    cutoff : float
+        Largest that was used, mm.
+    """
+
+    known: Bools
+    station: Floats
+    zone: Ints
+    trace: Floats
+    steady: Bools
+    matrix: Floats
+    error: Floats
+    noise: Floats
+    moved: Floats | None
+    usual: Floats
+    cutoff: float
+
+    @property
+    def counted(self) -> _Trace:
+        """Without what is only shown."""
+        on = self.zone != SHOWN
+        moved = None if self.moved is None else self.moved[on]
+        of_stations = {name: getattr(self, name)[on] for name in ("station", "zone", "trace", "steady", "matrix", "usual")}
+        return replace(self, **of_stations, noise=self.noise[:, on], moved=moved)
+
+
+@dataclass(frozen=True, slots=True)
+class _Over:
+    """What the traces of all flanks are evaluated over: stations with their zones, the form common to each side there, (2, n) mm; what causes in
+    common do to the bins; and normal numbers that errors of bins and causes are drawn with."""
+
+    traces: Traces
+    where: Range
+    station: Floats
+    zone: Ints
+    usual: Floats
+    shared: Floats | None
+    normal: Floats
+    motion: Floats | None
+
+    @classmethod
+    def of(cls, traces: Traces, where: Range, shared: Floats | None, common: CommonForm | None) -> _Over:
+        reach = min(where.start, traces.centre[0] - 0.5 * traces.step), max(where.outer, traces.centre[-1] + 0.5 * traces.step)
+        station, zone = stations(where, reach)
+        rng = np.random.default_rng(0)
+        normal = rng.standard_normal((DRAWS, traces.deviation.shape[-1]))
+        motion = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
+        usual = np.zeros((2, len(station))) if common is None else np.stack([common.at(side, station)[0] for side in (0, 1)])
+        return cls(traces, where, station, zone, usual, shared, normal, motion)
+
+    def filtered(self, tooth: int, side: int) -> _Trace | None:
+        """The trace of one flank; None where too little of it was seen."""
+        traces, usual = self.traces, self.usual[side]
+        seen = traces.count[tooth, side] > 0
+        if seen.sum() < 3:
+            return None
+        x, error = traces.station[tooth, side, seen], traces.standard_error[tooth, side, seen]
+        weight = traces.count[tooth, side, seen].astype(float)
+        known, matrix, cutoff, steady = filter_samples(self.station, x, weight, self.where, traces.step)
+        if not known.any():
+            return None
+        trace = matrix @ (traces.deviation[tooth, side, seen] - np.interp(x, self.station, usual)) + usual[known]
+        moved = None if self.shared is None else matrix @ self.shared[tooth, side, seen]
+        way = first_end(traces.deviation[tooth, side]) if traces.along == "z" else 1
+        noise = (self.normal[:, ::way][:, seen] * error) @ matrix.T
+        if moved is not None and self.motion is not None:
+            noise += self.motion @ with_sign_of(trace, moved).T
+        return _Trace(
+            known=known, station=self.station[known], zone=self.zone[known], trace=trace, steady=steady, matrix=matrix, error=error, noise=noise,
+            moved=moved, usual=usual[known], cutoff=float(cutoff.max()),
+        )  # fmt: skip
 
 
 def pressure_angle_deviation(evaluation: Evaluation, gear: Gear) -> Estimate:
@@ -287,13 +362,10 @@ def _put(whole: Estimate, estimate: Estimate, tooth: int, side: int) -> None:
         getattr(whole, field)[tooth, side] = getattr(estimate, field)
 
 
-def _deviations(
-    station: Floats, within: Bools, steady: Bools, where: Range, trace: Floats, noise: Floats, matrix: Floats, error: Floats,
-    moved: Floats | None, usual: Floats, whole: Floats,
-) -> dict[str, Estimate]:  # fmt: skip
-    """All deviations of one filtered trace; `noise` (draws, n) are simulated errors of it, `moved` (n, m) its share in common ones, `usual` (n,) the form
-    common to its side and `whole` (2,) the line through that over all of the range."""
-    t = (station - where.middle) / where.length
+def _deviations(one: _Trace, where: Range, whole: Floats) -> dict[str, Estimate]:
+    """All deviations of one filtered trace; `whole` (2,) is the line through the form common to its side, over all of the range."""
+    trace, steady, matrix, usual, within = one.trace, one.steady, one.matrix, one.usual, one.zone == INSIDE
+    t = (one.station - where.middle) / where.length
     base = np.vander(t, 2, increasing=True)
     share = _root_of_steps(t[within])
     fit = np.linalg.pinv(base[within] * share[:, None]) * share
@@ -301,8 +373,8 @@ def _deviations(
 
     def linear(row: Floats, instead: float) -> Estimate:
         """Of what the flank has for itself, and `instead` of the form common to all."""
-        through = (row @ matrix[within]) * error
-        shared = None if moved is None else row @ moved[within]
+        through = (row @ matrix[within]) * one.error
+        shared = None if one.moved is None else row @ one.moved[within]
         return Estimate.plain(row @ (trace - usual)[within] + instead, np.sqrt(through @ through), shared)
 
     lines = whole + np.array([row @ (trace - usual)[within] for row in fit])
@@ -319,6 +391,6 @@ def _deviations(
         "middle": linear(fit[0], float(whole[0])),
         "slope": linear(fit[1], float(whole[1])),
         "crowning": linear(-parabola[2], float(-parabola[2] @ usual[within])),
-        "form": of_causes(form, bent, noise, moved),
-        "total": of_causes(total, trace, noise, moved),
+        "form": of_causes(form, bent, one.noise, one.moved),
+        "total": of_causes(total, trace, one.noise, one.moved),
     }
