@@ -135,6 +135,7 @@ def evaluate(
     line_shared = None if shared is None else np.full((*shape, 2, shared.shape[-1]), np.nan)
     widest = where.cutoff
     shift, excess = np.full(shape, np.nan), Estimate.empty(shape)
+    lines: dict[bytes, _Lines] = {}
     through = [_line(station, over.zone == INSIDE, where, form) for form in over.usual]
     for tooth, side in np.ndindex(*shape):
         trace = over.filtered(tooth, side)
@@ -152,7 +153,9 @@ def evaluate(
         if share[tooth, side] < LEAST_SHARE:
             continue
         widest = max(widest, trace.cutoff)
-        deviations = _deviations(trace.counted, where, through[side])
+        if (seen_at := trace.known.tobytes()) not in lines:  # most flanks are known at the same stations
+            lines[seen_at] = _Lines.of(trace.counted, where)
+        deviations = _deviations(trace.counted, lines[seen_at], through[side])
         ends = deviations.pop("middle"), deviations["slope"]
         line[tooth, side] = [end.value for end in ends]
         if line_shared is not None:
@@ -225,7 +228,7 @@ class _Trace:
     @property
     def counted(self) -> _Trace:
         """Without what is only shown."""
-        on = self.zone != SHOWN
+        on = _run(self.zone != SHOWN)
         moved = None if self.moved is None else self.moved[on]
         of_stations = {name: getattr(self, name)[on] for name in ("station", "zone", "trace", "steady", "matrix", "usual")}
         return replace(self, **of_stations, noise=self.noise[:, on], moved=moved)
@@ -362,35 +365,60 @@ def _put(whole: Estimate, estimate: Estimate, tooth: int, side: int) -> None:
         getattr(whole, field)[tooth, side] = getattr(estimate, field)
 
 
-def _deviations(one: _Trace, where: Range, whole: Floats) -> dict[str, Estimate]:
+@dataclass(frozen=True, slots=True)
+class _Lines:
+    """What fits lines to traces that are known at the same stations: `base` (n, 2) is 1 and the way along, `fit` (2, inside) and `parabola` (3,
+    inside) give the coefficients of both from the values inside the evaluation range."""
+
+    inside: slice | Ints
+    base: Floats
+    fit: Floats
+    parabola: Floats
+
+    @classmethod
+    def of(cls, one: _Trace, where: Range) -> _Lines:
+        within = one.zone == INSIDE
+        t = (one.station - where.middle) / where.length
+        base = np.vander(t, 2, increasing=True)
+        share = _root_of_steps(t[within])
+        fit = np.linalg.pinv(base[within] * share[:, None]) * share
+        parabola = np.linalg.pinv(np.vander(2.0 * t[within], 3, increasing=True) * share[:, None]) * share
+        return cls(_run(within), base, fit, parabola)
+
+
+def _run(mask: Bools) -> slice | Ints:
+    """Index of what is True, a slice where it lies side by side: that is a view, where a mask copies."""
+    index = np.flatnonzero(mask)
+    return slice(int(index[0]), int(index[-1]) + 1) if len(index) and index[-1] - index[0] + 1 == len(index) else index
+
+
+def _deviations(one: _Trace, lines: _Lines, whole: Floats) -> dict[str, Estimate]:
     """All deviations of one filtered trace; `whole` (2,) is the line through the form common to its side, over all of the range."""
-    trace, steady, matrix, usual, within = one.trace, one.steady, one.matrix, one.usual, one.zone == INSIDE
-    t = (one.station - where.middle) / where.length
-    base = np.vander(t, 2, increasing=True)
-    share = _root_of_steps(t[within])
-    fit = np.linalg.pinv(base[within] * share[:, None]) * share
-    parabola = np.linalg.pinv(np.vander(2.0 * t[within], 3, increasing=True) * share[:, None]) * share
+    trace, matrix, usual = one.trace, one.matrix, one.usual
+    base, fit, parabola, inside = lines.base, lines.fit, lines.parabola, lines.inside
+    high, low = _run(one.steady), _run((one.zone == INSIDE) & one.steady)
+    own = (trace - usual)[inside]
 
     def linear(row: Floats, instead: float) -> Estimate:
         """Of what the flank has for itself, and `instead` of the form common to all."""
-        through = (row @ matrix[within]) * one.error
-        shared = None if one.moved is None else row @ one.moved[within]
-        return Estimate.plain(row @ (trace - usual)[within] + instead, np.sqrt(through @ through), shared)
+        through = (row @ matrix[inside]) * one.error
+        shared = None if one.moved is None else row @ one.moved[inside]
+        return Estimate.plain(row @ own + instead, np.sqrt(through @ through), shared)
 
-    lines = whole + np.array([row @ (trace - usual)[within] for row in fit])
+    line = whole + np.array([row @ own for row in fit])
 
     def total(y: Floats) -> Floats:
-        return np.asarray(y[:, steady].max(axis=-1) - y[:, within & steady].min(axis=-1))
+        return np.asarray(y[:, high].max(axis=-1) - y[:, low].min(axis=-1))
 
     def form(y: Floats) -> Floats:
-        return total(y - (y[:, within] @ fit.T) @ base.T)
+        return total(y - (y[:, inside] @ fit.T) @ base.T)
 
     # The line through what was seen of the common form is not the one through all of it.
-    bent = trace - base @ (lines - np.array([row @ trace[within] for row in fit]))
+    bent = trace - base @ (line - np.array([row @ trace[inside] for row in fit]))
     return {
         "middle": linear(fit[0], float(whole[0])),
         "slope": linear(fit[1], float(whole[1])),
-        "crowning": linear(-parabola[2], float(-parabola[2] @ usual[within])),
+        "crowning": linear(-parabola[2], float(-parabola[2] @ usual[inside])),
         "form": of_causes(form, bent, one.noise, one.moved),
         "total": of_causes(total, trace, one.noise, one.moved),
     }

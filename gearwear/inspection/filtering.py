@@ -76,7 +76,10 @@ def gauss_filter(out: Floats, x: Floats, weight: Floats, cutoff: float | Floats)
 
 def _bells(out: Floats, x: Floats, width: Floats) -> Floats:
     """(k, n) weight function round each place, its greatest value 1."""
-    power = -math.pi * ((x[None] - out[:, None]) / (GAUSS * width[:, None])) ** 2
+    power = x[None] - out[:, None]
+    power /= GAUSS * width[:, None]
+    power *= power
+    power *= -math.pi
     power -= power.max(axis=1, keepdims=True)
     bells = np.zeros_like(power)
     np.exp(power, out=bells, where=power > -80.0)  # most lie farther off, and denormal numbers would slow every product
@@ -88,8 +91,13 @@ def _with_first_moment(kernel: Floats, out: Floats, x: Floats, width: Floats) ->
     kernel = kernel / kernel.sum(axis=1, keepdims=True)
     mean = kernel @ x
     off = x[None] - mean[:, None]
-    spread = (kernel * off**2).sum(axis=1) + (1e-6 * width) ** 2
-    return np.asarray(kernel * (1.0 + off * ((out - mean) / spread)[:, None]), dtype=np.float64)
+    square = off * off
+    square *= kernel
+    spread = square.sum(axis=1) + (1e-6 * width) ** 2
+    off *= ((out - mean) / spread)[:, None]
+    off += 1.0
+    kernel *= off
+    return np.asarray(kernel, dtype=np.float64)
 
 
 def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, step: float) -> tuple[Bools, Floats, Floats, Bools]:
@@ -124,7 +132,9 @@ def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, ste
     matrix = _with_first_moment(weight * bells, station[known], x, cutoff)
     variance = (matrix**2) @ (1.0 / weight)
     # What an even trace would have there too, at its ends, is no thinness.
-    thinness = variance / (_with_first_moment(bells, station[known], x, cutoff) ** 2).sum(axis=1)
+    even = _with_first_moment(bells, station[known], x, cutoff)
+    even *= even
+    thinness = variance / even.sum(axis=1)
     usable = known.copy()
     if known.any():
         points, usual = 1.0 / np.maximum(variance, 1e-300), 1.0 / np.median(variance)
