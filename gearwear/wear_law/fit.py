@@ -398,72 +398,96 @@ def fit_wear_law(
     >>> fit.headline()
     'A 4.000 ± 0.024 µm · |K|, B 2.000 ± 0.038 µm, C 0.000 ± 0.035 µm; load sharing none'
     """
-    roll, depth = np.asarray(roll, dtype=np.float64), np.atleast_2d(np.asarray(depth, dtype=np.float64))
-    errors = None if std is None else np.asarray(std, dtype=np.float64)
-    points = roll.size
-    if (
-        roll.ndim != 1
-        or depth.shape[1:] != (points,)
-        or (errors is not None and errors.shape not in ((points,), (points, points)))
-    ):
-        raise InputError("wear law: lengths of roll (n,), depths (n,) or (teeth, n) and standard deviations (n,) must match")
+    profile = _Profile.of(roll, depth, std, width)
     check_number("correlation_length", correlation_length, "mm")
     if not correlation_length >= 0.0:
         raise InputError(f"wear law: correlation length = {correlation_length:g} mm: must not be below 0")
     path = path_of_contact(gear, mate, centre_distance)
-    use = np.isfinite(depth).all(axis=0) & (roll >= path.start_pinion) & (roll <= path.end_pinion) & (roll > 0.0)
-    # A stretch that reaches past the path, where nothing is worn, is no mean of the law.
-    wide = np.asarray(width, dtype=np.float64)
-    if wide.shape not in ((), (points,)) or not (wide >= 0.0).all():
-        raise InputError("wear law: width must be a number of mm of roll, or one for each length of roll, and not below 0")
-    half = 0.5 * wide
-    on_path = np.minimum(roll + half, path.end_pinion) - np.maximum(roll - half, path.start_pinion)
-    use &= on_path >= LEAST_ON_PATH * 2.0 * half
-    if errors is not None:
-        use &= np.isfinite(errors if errors.ndim == 1 else np.diag(errors))
-    if use.sum() < _LEAST_POINTS:
-        raise InputError(
-            f"wear law: {int(use.sum())} points on the path of contact, L = {path.start_pinion:.3f} … {path.end_pinion:.3f} mm; at least {_LEAST_POINTS} are needed"
-        )
-    stretch = np.broadcast_to(wide, roll.shape)[use]
-    roll, depth = roll[use], depth[:, use]
-    if errors is not None:
-        errors = errors[use] if errors.ndim == 1 else errors[np.ix_(use, use)]
-    if (errors is not None and not ((errors if errors.ndim == 1 else np.diag(errors)) > 0.0).all()) or not (
-        np.diff(roll) > 0.0
-    ).all():
-        raise InputError("wear law: standard deviations must be above 0 mm and lengths of roll must rise")
+    profile = profile.on(path)
     models = LoadSharing.of(gear)
     if sharing is not None:
         check_choice("sharing", sharing, models)
         models = (LoadSharing(sharing),)
     # Equal arcs are equal steps of L²; the harmonic mean of such a stretch is its middle.
-    edges = np.clip(roll[:, None] + np.array([-0.5, 0.5]) * stretch[:, None], path.start_pinion, path.end_pinion)
+    stretch = np.array([-0.5, 0.5]) * profile.width[:, None]
+    edges = np.clip(profile.roll[:, None] + stretch, path.start_pinion, path.end_pinion)
     bases = [law_over(gear, mate, centre_distance, edges, model) for model in models]
-    covariance = profile_covariance(roll, errors, correlation_length)
+    covariance = profile_covariance(profile.roll, profile.errors, correlation_length)
     if not np.linalg.eigvalsh(covariance)[0] > 0.0:
         raise InputError("wear law: the covariance of the depth must be symmetric and positive definite")
-    if errors is None:
-        covariance = covariance * error_size(bases, depth, covariance)
-    known = errors is not None or len(depth) > 1
-    parts = [fitted(basis, depth, covariance) for basis in bases]
+    if profile.errors is None:
+        covariance = covariance * error_size(bases, profile.depth, covariance)
+    parts = [fitted(basis, profile.depth, covariance) for basis in bases]
     fits = [
         WearFit(
             gear=gear,
             mate=mate,
             centre_distance=centre_distance,
             sharing=model,
-            roll=roll,
-            depth=depth.mean(axis=0),
-            teeth=depth,
+            roll=profile.roll,
+            depth=profile.depth.mean(axis=0),
+            teeth=profile.depth,
             errors=covariance,
-            known=known,
+            known=profile.errors is not None or len(profile.depth) > 1,
             basis=basis,
             **part._asdict(),
         )
         for model, basis, part in zip(models, bases, parts, strict=True)
     ]
     return tuple(sorted(fits, key=lambda fit: fit.chi_square))
+
+
+@dataclass(frozen=True, slots=True)
+class _Profile:
+    """Depths of teeth (k, n) at lengths of roll (n,), means over widths (n,), mm, with standard deviations (n,) or a covariance (n, n), or None."""
+
+    roll: Floats
+    depth: Floats
+    errors: Floats | None
+    width: Floats
+
+    @classmethod
+    def of(cls, roll: Floats, depth: Floats, std: Floats | None, width: Floats | float) -> _Profile:
+        """As given to `fit_wear_law`; refused where the arrays do not match."""
+        roll, depth = np.asarray(roll, dtype=np.float64), np.atleast_2d(np.asarray(depth, dtype=np.float64))
+        errors = None if std is None else np.asarray(std, dtype=np.float64)
+        points = roll.size
+        if (
+            roll.ndim != 1
+            or depth.shape[1:] != (points,)
+            or (errors is not None and errors.shape not in ((points,), (points, points)))
+        ):
+            raise InputError("wear law: lengths of roll (n,), depths (n,) or (teeth, n) and standard deviations (n,) must match")
+        return cls(roll, depth, errors, np.asarray(width, dtype=np.float64))
+
+    @property
+    def spread(self) -> Floats | None:
+        """(n,) the standard deviations, or the diagonal of the covariance: not above 0 where it is none."""
+        return self.errors if self.errors is None or self.errors.ndim == 1 else np.diag(self.errors)
+
+    def on(self, path: PathOfContact) -> _Profile:
+        """What of it is known and lies on the path of contact; refused where that is too little, or no profile."""
+        roll, wide, spread = self.roll, self.width, self.spread
+        use = np.isfinite(self.depth).all(axis=0) & (roll >= path.start_pinion) & (roll <= path.end_pinion) & (roll > 0.0)
+        if wide.shape not in ((), roll.shape) or not (wide >= 0.0).all():
+            raise InputError("wear law: width must be a number of mm of roll, or one for each length of roll, and not below 0")
+        # A stretch that reaches past the path, where nothing is worn, is no mean of the law.
+        half = 0.5 * wide
+        on_path = np.minimum(roll + half, path.end_pinion) - np.maximum(roll - half, path.start_pinion)
+        use &= on_path >= LEAST_ON_PATH * 2.0 * half
+        if spread is not None:
+            use &= np.isfinite(spread)
+        if use.sum() < _LEAST_POINTS:
+            raise InputError(
+                f"wear law: {int(use.sum())} points on the path of contact, L = {path.start_pinion:.3f} … {path.end_pinion:.3f} mm; at least {_LEAST_POINTS} are needed"
+            )
+        errors = self.errors
+        if errors is not None:
+            errors = errors[use] if errors.ndim == 1 else errors[np.ix_(use, use)]
+        used = _Profile(roll[use], self.depth[:, use], errors, np.broadcast_to(wide, roll.shape)[use])
+        if not ((used.spread is None or (used.spread > 0.0).all()) and (np.diff(used.roll) > 0.0).all()):
+            raise InputError("wear law: standard deviations must be above 0 mm and lengths of roll must rise")
+        return used
 
 
 def alike_fits(fits: Sequence[WearFit]) -> tuple[WearFit, ...]:

@@ -214,47 +214,9 @@ def forecast_by_running(
     ):
         raise InputError("forecast: load and cycles run above 0, and cycles not below those run, are needed")
     ratio = asked / cycles_run
-    start = fit.amount / load_per_width
-    if not start > 0.0:
-        raise InputError("forecast: no sliding wear is seen to run on from")
+    runs = _likely_runs(fit, load_per_width, max(float(ratio.max()), 1.0), material, misalignment, side)
     state = FlankState.of(fit)
-    longest = max(float(ratio.max()), 1.0)
-    for _ in range(_MOST_LOOKS):
-        most = _REACH * start
-        histories = run_histories(
-            fit.gear, fit.mate, fit.centre_distance, load_per_width, most * longest, material, misalignment, side
-        )  # fmt: skip
-        moments, weights = _weighed(fit, histories, most)
-        if int(weights.sum(axis=0).argmax()) < len(moments) - 1:
-            break
-        start *= 2.0  # the likeliest is the most that was looked at: more may be likelier
-    random = np.random.default_rng(len(fit.roll))
-    picked = random.choice(weights.size, DRAWS, p=weights.ravel())
-    which, moment = np.divmod(picked, len(moments))
-    depth = np.empty((len(ratio), DRAWS, len(state.roll)))
-    # What a run leaves of the measured profile stays as it is, smoothed; beyond the points that were measured the run alone speaks.
-    near = state.near
-    error = random.normal(size=(DRAWS, 1)) * np.sqrt(np.einsum("ij,jk,ik->i", near, fit.errors, near))
-    more = 1.0 + MODEL_SHARE * random.normal(size=(DRAWS, 1))
-    # What no run has is alike over a length: of places beyond the points, at either end, the nearest of these says so much the less.
-    beyond = np.maximum(np.maximum(fit.roll[0] - state.roll, state.roll - fit.roll[-1]), 0.0)
-    loose = random.normal(size=(DRAWS, 2))[:, (state.roll > fit.roll[-1]).astype(int)] * np.sqrt(
-        -np.expm1(-2.0 * beyond / MODEL_LENGTH)
-    )
-    for index, history in enumerate(histories):
-        on = which == index
-        if not on.any():
-            continue
-        time = moments[moment[on]]
-        before = history.at(time, state.roll)
-        left = (fit.depth - history.at(time, fit.roll)) @ near.T
-        now = before + left
-        now = np.maximum(now + error[on] + loose[on] * np.hypot(MODEL_SHARE * np.maximum(now, 0.0), MODEL_FLOOR), 0.0)
-        # Where more is lost than a run says, more load was carried or more slid, and goes on so.
-        share = np.clip(now / np.maximum(before, MODEL_FLOOR), 1.0 / MOST_APART, MOST_APART)
-        for i, times in enumerate(ratio):
-            grown = share * np.maximum(history.at(np.minimum(times * time, history.time[-1]), state.roll) - before, 0.0)
-            depth[i, on] = now + grown * more[on]
+    depth = _drawn_depths(fit, state, runs, ratio)
     tail = 0.5 * (1.0 - confidence)
 
     def band(values: Floats) -> Band:
@@ -272,10 +234,70 @@ def forecast_by_running(
         greatest_depth=band_of("depth"),
         thickness_loss=band_of("thickness"),
         backlash_increase=band_of("backlash"),
-        models=len(histories),
+        models=len(runs.histories),
         cycles_run=cycles_run,
         by_running=True,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _LikelyRuns:
+    """Runs (k of them), amounts of wear so far (n,), mm²/N, and the weight of each amount in each run (k, n), 1 in all."""
+
+    histories: tuple[WearHistory, ...]
+    moments: Floats
+    weights: Floats
+
+
+def _likely_runs(
+    fit: WearFit, load_per_width: float, longest: float, material: Material | None, misalignment: float, side: Side
+) -> _LikelyRuns:
+    """Runs up to `longest` times the wear so far, with how likely they are by the measured profile."""
+    start = fit.amount / load_per_width
+    if not start > 0.0:
+        raise InputError("forecast: no sliding wear is seen to run on from")
+    for _ in range(_MOST_LOOKS):
+        most = _REACH * start
+        histories = run_histories(
+            fit.gear, fit.mate, fit.centre_distance, load_per_width, most * longest, material, misalignment, side
+        )  # fmt: skip
+        moments, weights = _weighed(fit, histories, most)
+        if int(weights.sum(axis=0).argmax()) < len(moments) - 1:
+            break
+        start *= 2.0  # the likeliest is the most that was looked at: more may be likelier
+    return _LikelyRuns(histories, moments, weights)
+
+
+def _drawn_depths(fit: WearFit, state: FlankState, runs: _LikelyRuns, ratio: Floats) -> Floats:
+    """Depths after each multiple of the cycles run, (ratios, draws, n) mm, drawn from what is known of runs, profile and model."""
+    random = np.random.default_rng(len(fit.roll))
+    picked = random.choice(runs.weights.size, DRAWS, p=runs.weights.ravel())
+    which, moment = np.divmod(picked, len(runs.moments))
+    depth = np.empty((len(ratio), DRAWS, len(state.roll)))
+    # What a run leaves of the measured profile stays as it is, smoothed; beyond the points that were measured the run alone speaks.
+    near = state.near
+    error = random.normal(size=(DRAWS, 1)) * np.sqrt(np.einsum("ij,jk,ik->i", near, fit.errors, near))
+    more = 1.0 + MODEL_SHARE * random.normal(size=(DRAWS, 1))
+    # What no run has is alike over a length: of places beyond the points, at either end, the nearest of these says so much the less.
+    beyond = np.maximum(np.maximum(fit.roll[0] - state.roll, state.roll - fit.roll[-1]), 0.0)
+    loose = random.normal(size=(DRAWS, 2))[:, (state.roll > fit.roll[-1]).astype(int)] * np.sqrt(
+        -np.expm1(-2.0 * beyond / MODEL_LENGTH)
+    )
+    for index, history in enumerate(runs.histories):
+        on = which == index
+        if not on.any():
+            continue
+        time = runs.moments[moment[on]]
+        before = history.at(time, state.roll)
+        left = (fit.depth - history.at(time, fit.roll)) @ near.T
+        now = before + left
+        now = np.maximum(now + error[on] + loose[on] * np.hypot(MODEL_SHARE * np.maximum(now, 0.0), MODEL_FLOOR), 0.0)
+        # Where more is lost than a run says, more load was carried or more slid, and goes on so.
+        share = np.clip(now / np.maximum(before, MODEL_FLOOR), 1.0 / MOST_APART, MOST_APART)
+        for i, times in enumerate(ratio):
+            grown = share * np.maximum(history.at(np.minimum(times * time, history.time[-1]), state.roll) - before, 0.0)
+            depth[i, on] = now + grown * more[on]
+    return depth
 
 
 def _weighed(fit: WearFit, histories: Sequence[WearHistory], most: float) -> tuple[Floats, Floats]:
