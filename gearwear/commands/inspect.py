@@ -20,11 +20,13 @@ from gearwear.commands.inputs import (
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
+    from gearwear.comparison.measured_gear import MeasuredGear
     from gearwear.design.gear import Gear
     from gearwear.design.pair import Design
     from gearwear.diagnose.found import Loop
     from gearwear.inspection import Settings
     from gearwear.inspection.halves import Half
+    from gearwear.inspection.inspection import Inspection
     from gearwear.inspection.tolerances import Edition
 
 DESCRIPTION = """\
@@ -153,58 +155,57 @@ def _run(arguments: Namespace) -> None:
         edition = _edition(arguments)
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
-        from gearwear.comparison.bore import filled_in
         from gearwear.comparison.closing import measure
-        from gearwear.inspection.halves import half_gear, inspect_half
         from gearwear.placing.refusal import seen_radii
         from gearwear.report.files.inspection import dimension_lines, inspection_record, lines, worst_tooth, write_inspection
         from gearwear.report.words.verdict import subject, wrong_design
 
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
-        teeth = _teeth(arguments.topography, measured.gear.teeth)
+        gear = measured.gear
+        teeth = _teeth(arguments.topography, gear.teeth)
         tell("inspection")
-        half = _half(arguments, measured.gear)
-        nominal = measured.gear if half is None else half_gear(measured.gear, half)
-        asked = _settings(arguments, nominal, edition)
-        flanks, settings = filled_in(measured, asked)
-        about_teeth = None
-        if settings.axis != "teeth":
-            on_teeth, beside = filled_in(measured, replace(asked, axis="teeth", laboratory=False))
-            about_teeth = inspect_half(on_teeth, measured.gear, half, beside)
-        inspection = inspect_half(flanks, measured.gear, half, settings)
+        half = _half(arguments, gear)
+        inspection, about_teeth = _inspected(arguments, measured, half, edition)
         tell("charts")
+        doubt = wrong_design(gear, seen_radii(measured.placed, gear), scale=measured.scale)
+        which = f"the {half} half of a double helical gear" if half is not None else ""
+        left = (_taken_out(measured.loop), _unexplained(measured.loop, gear))
+        notes = [*filter(None, [which, doubt, *left]), *measured.notes]
+        registration, command = measured.placed.registration, arguments.command
+        record = inspection_record(
+            design, measured.part, measured.scans, registration, measured.loop, notes, command, about_teeth
+        )
+
+        def report(path: Path, files: Sequence[str]) -> None:
+            from gearwear.report.page.inspection_view import inspection_view
+            from gearwear.report.pdf import write_pdf
+
+            about, dimensions = subject(measured.part, gear, measured.scans), dimension_lines(inspection)
+            write_pdf(path, inspection_view(design, measured.scans, inspection, about, notes, dimensions, files, command))
+
+        drawn = [worst_tooth(inspection)] if teeth is None else teeth
         with output_folder(arguments.out) as stage:
-            registration = measured.placed.registration
-            gear = measured.gear
-            doubt = wrong_design(gear, seen_radii(measured.placed, gear), scale=measured.scale)
-            which = f"the {half} half of a double helical gear" if half is not None else ""
-            left = (_taken_out(measured.loop), _unexplained(measured.loop, gear))
-            notes = [*filter(None, [which, doubt, *left]), *measured.notes]
-            record = inspection_record(
-                design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command, about_teeth
-            )
-
-            def report(path: Path, files: Sequence[str]) -> None:
-                from gearwear.report.page.inspection_view import inspection_view
-                from gearwear.report.pdf import write_pdf
-
-                about = subject(measured.part, gear, measured.scans)
-                write_pdf(
-                    path,
-                    inspection_view(
-                        design, measured.scans, inspection, about, notes, dimension_lines(inspection), files, arguments.command
-                    ),
-                )
-
-            drawn = [worst_tooth(inspection)] if teeth is None else teeth
             files = write_inspection(stage, record, inspection, drawn, report if arguments.pdf else None)
     if not arguments.quiet:
-        print_lines(
-            [
-                *lines(inspection, subject(measured.part, gear, measured.scans, 80), [*notes, *inspection.foremost]),
-                *written(arguments.out, files),
-            ]
-        )
+        said = lines(inspection, subject(measured.part, gear, measured.scans, 80), [*notes, *inspection.foremost])
+        print_lines([*said, *written(arguments.out, files)])
+
+
+def _inspected(
+    arguments: Namespace, measured: MeasuredGear, half: Half | None, edition: Edition
+) -> tuple[Inspection, Inspection | None]:
+    """The inspection that is asked for; and where it is about another axis than that of the teeth, the one about that."""
+    from gearwear.comparison.bore import filled_in
+    from gearwear.inspection.halves import half_gear, inspect_half
+
+    nominal = measured.gear if half is None else half_gear(measured.gear, half)
+    asked = _settings(arguments, nominal, edition)
+    flanks, settings = filled_in(measured, asked)
+    about_teeth = None
+    if settings.axis != "teeth":
+        on_teeth, beside = filled_in(measured, replace(asked, axis="teeth", laboratory=False))
+        about_teeth = inspect_half(on_teeth, measured.gear, half, beside)
+    return inspect_half(flanks, measured.gear, half, settings), about_teeth
 
 
 def _half(arguments: Namespace, gear: Gear) -> Half | None:
@@ -247,75 +248,102 @@ def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> N
 
 def _ranges(arguments: Namespace, gear: Gear) -> Settings:
     """The ranges, sections and circles, each checked against the gear."""
-    from gearwear.design.quantity import as_given, at_least, at_most
     from gearwear.inspection import Settings
-    from gearwear.inspection.settings import LONGEST
     from gearwear.inspection.stylus import check_ball
 
-    low, high = gear.form_roll, gear.tip_roll
-
-    def roll(name: str, diameter: float | None) -> float | None:
-        """L of a circle on the involute, mm."""
-        if diameter is None:
-            return None
-        first, last = sorted(2.0 * math.hypot(gear.base_radius, value) for value in (low, high))
-        if not first <= diameter <= last:
-            raise InputError(f"{name} {as_given(diameter)}: the involute goes from {at_least(first, 3)} to {at_most(last, 3)} mm")
-        return math.sqrt(max(0.25 * diameter**2 - gear.base_radius**2, 0.0))
-
-    def positive(name: str, value: float | None) -> float | None:
-        if value is not None and not 0.0 < value <= LONGEST:
-            raise InputError(f"{name} {as_given(value)}: a length above 0 mm and at most {LONGEST:g} mm would be right")
-        return value
-
-    def on_face(name: str, between: tuple[float, float] | None) -> tuple[float, float] | None:
-        if between is not None and not 0.0 <= between[0] < between[1] <= gear.face_width:
-            raise InputError(
-                f"{name} {as_given(between[0])},{as_given(between[1])}: the face goes from 0 to {as_given(gear.face_width)} mm"
-            )
-        return between
-
     check_ball(arguments.stylus_radius_mm, gear)
-    between = arguments.profile_roll_mm
-    if between is not None and not (min(low, high) <= between[0] and between[1] <= max(low, high)):
+    first, last = _profile_range(arguments, gear)
+    band, strip = _section_band(arguments, gear), _circle_strip(arguments, gear)
+    return Settings(
+        control_roll=first,
+        profile_end=last,
+        slope_length=_length("--slope-length-mm", arguments.slope_length_mm),
+        helix_between=_on_face("--helix-z-mm", arguments.helix_z_mm, gear),
+        profile_cutoff=_length("--profile-cutoff-mm", arguments.profile_cutoff_mm),
+        helix_cutoff=_length("--helix-cutoff-mm", arguments.helix_cutoff_mm),
+        stylus_radius=arguments.stylus_radius_mm,
+        profile_band=band,
+        helix_band=strip,
+        pitch_roll=_roll_at("--pitch-diameter-mm", arguments.pitch_diameter_mm, gear),
+        pitch_band=_on_face("--pitch-z-mm", arguments.pitch_z_mm, gear),
+    )
+
+
+def _length(name: str, value: float | None) -> float | None:
+    """What is given must be a length."""
+    from gearwear.design.quantity import as_given
+    from gearwear.inspection.settings import LONGEST
+
+    if value is not None and not 0.0 < value <= LONGEST:
+        raise InputError(f"{name} {as_given(value)}: a length above 0 mm and at most {LONGEST:g} mm would be right")
+    return value
+
+
+def _roll_at(name: str, diameter: float | None, gear: Gear) -> float | None:
+    """L of a circle on the involute, mm."""
+    from gearwear.design.quantity import as_given, at_least, at_most
+
+    if diameter is None:
+        return None
+    first, last = sorted(2.0 * math.hypot(gear.base_radius, value) for value in (gear.form_roll, gear.tip_roll))
+    if not first <= diameter <= last:
+        raise InputError(f"{name} {as_given(diameter)}: the involute goes from {at_least(first, 3)} to {at_most(last, 3)} mm")
+    return math.sqrt(max(0.25 * diameter**2 - gear.base_radius**2, 0.0))
+
+
+def _on_face(name: str, between: tuple[float, float] | None, gear: Gear) -> tuple[float, float] | None:
+    """Two heights of the face."""
+    from gearwear.design.quantity import as_given
+
+    if between is not None and not 0.0 <= between[0] < between[1] <= gear.face_width:
         raise InputError(
-            f"--profile-roll-mm {as_given(between[0])},{as_given(between[1])}: the involute goes from {at_least(min(low, high), 3)} to {at_most(max(low, high), 3)} mm of roll"
+            f"{name} {as_given(between[0])},{as_given(between[1])}: the face goes from 0 to {as_given(gear.face_width)} mm"
+        )
+    return between
+
+
+def _profile_range(arguments: Namespace, gear: Gear) -> tuple[float | None, float | None]:
+    """L where the profile evaluation begins and ends, from the root on, mm; None: not said."""
+    from gearwear.design.quantity import as_given, at_least, at_most
+
+    between, (low, high) = arguments.profile_roll_mm, sorted((gear.form_roll, gear.tip_roll))
+    if between is not None and not (low <= between[0] and between[1] <= high):
+        raise InputError(
+            f"--profile-roll-mm {as_given(between[0])},{as_given(between[1])}: the involute goes from {at_least(low, 3)} to {at_most(high, 3)} mm of roll"
         )
     if arguments.profile_diameters_mm is not None:
         if between is not None:
             raise InputError("--profile-roll-mm and --profile-diameters-mm say the same: give one of them")
-        first, last = (roll("--profile-diameters-mm", diameter) for diameter in arguments.profile_diameters_mm)
-        assert first is not None and last is not None
-        between = (first, last)
-    if between is not None and gear.spec.internal:
-        between = (between[1], between[0])  # from the root on
-    section, band = arguments.profile_z_mm, None
-    if section is not None:
-        half = positive("--profile-half-width-mm", arguments.profile_half_width_mm) or 0.05 * gear.face_width
-        if not 0.0 <= section <= gear.face_width:
-            raise InputError(f"--profile-z-mm {as_given(section)}: the face goes from 0 to {as_given(gear.face_width)} mm")
-        band = (section - half, section + half)
-    elif arguments.profile_half_width_mm is not None:
-        raise InputError("--profile-half-width-mm needs the place of the section, as --profile-z-mm MM")
-    circle, strip = roll("--helix-diameter-mm", arguments.helix_diameter_mm), None
-    if circle is not None:
-        half = positive("--helix-half-width-mm", arguments.helix_half_width_mm) or 0.05 * abs(high - low)
-        strip = (circle - half, circle + half)
-    elif arguments.helix_half_width_mm is not None:
-        raise InputError("--helix-half-width-mm needs the place of the band, as --helix-diameter-mm MM")
-    return Settings(
-        control_roll=None if between is None else between[0],
-        profile_end=None if between is None else between[1],
-        slope_length=positive("--slope-length-mm", arguments.slope_length_mm),
-        helix_between=on_face("--helix-z-mm", arguments.helix_z_mm),
-        profile_cutoff=positive("--profile-cutoff-mm", arguments.profile_cutoff_mm),
-        helix_cutoff=positive("--helix-cutoff-mm", arguments.helix_cutoff_mm),
-        stylus_radius=arguments.stylus_radius_mm,
-        profile_band=band,
-        helix_band=strip,
-        pitch_roll=roll("--pitch-diameter-mm", arguments.pitch_diameter_mm),
-        pitch_band=on_face("--pitch-z-mm", arguments.pitch_z_mm),
-    )
+        between = [_roll_at("--profile-diameters-mm", diameter, gear) for diameter in arguments.profile_diameters_mm]
+    first, last = (None, None) if between is None else between
+    return (last, first) if gear.spec.internal else (first, last)
+
+
+def _section_band(arguments: Namespace, gear: Gear) -> tuple[float, float] | None:
+    """From z to z of the section in which profiles are taken, mm."""
+    from gearwear.design.quantity import as_given
+
+    section = arguments.profile_z_mm
+    if section is None:
+        if arguments.profile_half_width_mm is not None:
+            raise InputError("--profile-half-width-mm needs the place of the section, as --profile-z-mm MM")
+        return None
+    half = _length("--profile-half-width-mm", arguments.profile_half_width_mm) or 0.05 * gear.face_width
+    if not 0.0 <= section <= gear.face_width:
+        raise InputError(f"--profile-z-mm {as_given(section)}: the face goes from 0 to {as_given(gear.face_width)} mm")
+    return section - half, section + half
+
+
+def _circle_strip(arguments: Namespace, gear: Gear) -> tuple[float, float] | None:
+    """From L to L of the band in which helices are taken, mm."""
+    circle = _roll_at("--helix-diameter-mm", arguments.helix_diameter_mm, gear)
+    if circle is None:
+        if arguments.helix_half_width_mm is not None:
+            raise InputError("--helix-half-width-mm needs the place of the band, as --helix-diameter-mm MM")
+        return None
+    length = 0.05 * abs(gear.tip_roll - gear.form_roll)
+    half = _length("--helix-half-width-mm", arguments.helix_half_width_mm) or length
+    return circle - half, circle + half
 
 
 def _settings(arguments: Namespace, gear: Gear, edition: Edition) -> Settings:
