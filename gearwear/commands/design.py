@@ -16,7 +16,7 @@ from gearwear.errors import InputError
 if TYPE_CHECKING:
     from gearwear.design.gear import Gear
     from gearwear.design.spec import GearSpec
-    from gearwear.identify.candidates import SurfaceLeft
+    from gearwear.identify.candidates import CandidateGear, SurfaceLeft
     from gearwear.identify.gauges import Gauge, Helix
     from gearwear.identify.proposal import Proposal
     from gearwear.identify.survey import Survey
@@ -259,9 +259,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
                 f"--{name.replace('_', '-')} beside a scan: the scan is measured itself; one of the two would be right"
             )
     from gearwear.design.files.writing import design_text
-    from gearwear.design.standards import diametral_pitch, inch_words
-    from gearwear.identify.candidates import UNKNOWN_WIDTH, find_candidates
-    from gearwear.identify.survey import DOUBTFUL
+    from gearwear.identify.candidates import find_candidates
     from gearwear.scan.reading import read_one
     from gearwear.scan.units import factor
 
@@ -277,6 +275,24 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     except InputError as error:
         raise InputError(f"{arguments.scan}: {error}") from None
     best, seen = candidates.ranked[0], candidates.survey
+    header = [f"Proposed by gearwear design from {arguments.scan.name}: check it against the drawing.", best.proposal.name, ""]
+    header += _remains(candidates.gauges, best.proposal)
+    header += _told(best.proposal, seen)
+    header += ["Left on the scan, fitted to it (median and scatter of the deviations):"]
+    header += [f"  {surface.surface:<40}{1e3 * surface.median:>+9.1f} ± {1e3 * surface.scatter:.1f} µm" for surface in best.left]
+    header += _tips(best.gear, 2.0 * seen.tip_radius, best.left)
+    header += _others(best.proposal, [candidate.proposal for candidate in candidates.ranked[1:]])
+    header += _doubts(seen, best)
+    header += _measured_thinning(best.gear.spec)
+    text = design_text(best.gear.spec, header, _remarks(arguments, seen, best))
+    return text, f"{seen.teeth} teeth, {best.proposal.name}"
+
+
+def _remarks(arguments: Namespace, seen: Survey, best: CandidateGear) -> dict[str, str]:
+    """What stands behind the values of the file: what was seen in place of what is written."""
+    from gearwear.design.standards import diametral_pitch, inch_words
+    from gearwear.identify.candidates import UNKNOWN_WIDTH
+
     remarks = {"rack_tip_radius": "of those in use, the one whose root fits best", "teeth": ""}
     if len(seen.halves) > 1:
         remarks |= {"helix_angle": "of the half at z = 0", "gap": f"{seen.gap:.3f} mm seen"}
@@ -291,29 +307,27 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
         remarks["bore_diameter"] = f"{seen.bore_diameter:.3f} mm seen"
     if best.proposal.thinning:
         remarks["thinning"] = "wear of all flanks would look the same"
-    header = [f"Proposed by gearwear design from {arguments.scan.name}: check it against the drawing.", best.proposal.name, ""]
-    header += _remains(candidates.gauges, best.proposal)
-    header += _told(best.proposal, seen)
-    header += ["Left on the scan, fitted to it (median and scatter of the deviations):"]
-    header += [f"  {surface.surface:<40}{1e3 * surface.median:>+9.1f} ± {1e3 * surface.scatter:.1f} µm" for surface in best.left]
-    header += _tips(best.gear, 2.0 * seen.tip_radius, best.left)
-    header += _others(best.proposal, [candidate.proposal for candidate in candidates.ranked[1:]])
-    header += [f"Note: {note}." for note in seen.notes]
+    return remarks
+
+
+def _doubts(seen: Survey, best: CandidateGear) -> list[str]:
+    """What the reader must know of the scan before he believes the file."""
+    from gearwear.identify.survey import DOUBTFUL
+
+    said = [f"Note: {note}." for note in seen.notes]
     pitch = 2.0 * math.pi * seen.tip_radius / seen.teeth
     if best.scatter > DOUBTFUL * pitch:
-        header.append(
-            f"Note: the flanks scatter by {1e3 * best.scatter:.0f} µm about the best of these, {100 * best.scatter / pitch:.1f} % of the pitch:"
-        )
-        header.append("all teeth are worn, or another axis, tooth count or helix angle is the right one.")
+        said += [
+            f"Note: the flanks scatter by {1e3 * best.scatter:.0f} µm about the best of these, {100 * best.scatter / pitch:.1f} % of the pitch:",
+            "all teeth are worn, or another axis, tooth count or helix angle is the right one.",
+        ]
     if seen.internal:
-        header.append(
-            "Note: a scan does not tell the cutter. None is written, and fillets and roots are no datum; cutter_teeth with"
-        )
-        header.append("cutter_tip_radius, or fillet_radius, of the drawing make them one.")
+        said += [
+            "Note: a scan does not tell the cutter. None is written, and fillets and roots are no datum; cutter_teeth with",
+            "cutter_tip_radius, or fillet_radius, of the drawing make them one.",
+        ]
         if not seen.rim_diameter:
-            header.append("Note: the outside was not seen: rim_diameter gives the ring a volume and a solid model.")
+            said.append("Note: the outside was not seen: rim_diameter gives the ring a volume and a solid model.")
     if not USUAL[0] < 2.0 * seen.tip_radius < USUAL[1]:
-        header.append(f"Note: {2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
-    spec = best.gear.spec
-    header += _measured_thinning(spec)
-    return design_text(spec, header, remarks), f"{seen.teeth} teeth, {best.proposal.name}"
+        said.append(f"Note: {2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
+    return said

@@ -89,7 +89,6 @@ class Gear:
         rf = r - orientation * m * (spec.dedendum - spec.profile_shift)
         thickness = (0.5 * math.pi * m + 2.0 * spec.profile_shift * m * math.tan(alpha) - spec.thinning) / cos_beta
         psi_b = thickness / (2.0 * r) + orientation * involute_function(alpha_t)
-        pitch_angle = 2.0 * math.pi / spec.teeth
         if min(rf, ra) <= 0.0 or orientation * (ra - rf) <= 0.0:
             where, (tip, bottom) = "inside" if spec.internal else "outside", apart(2 * ra, 2 * rf)
             raise InputError(
@@ -135,7 +134,7 @@ class Gear:
             flank_end_radius=flank_end,
             root_stated=root.stated,
         )
-        gear._check(pitch_angle)
+        gear._check()
         return gear
 
     def recut(self, **changes: Any) -> Gear:
@@ -151,7 +150,7 @@ class Gear:
             spec = replace(spec, modified_between=(self.form_roll, self.tip_roll))
         return Gear.from_spec(spec)
 
-    def _check(self, pitch_angle: float) -> None:
+    def _check(self) -> None:
         name, spec = self.spec.name, self.spec
         reference_half_angle = self.tooth_thickness / (2.0 * self.reference_radius)
         if not 0.0 < (reference_half_angle if spec.internal else self.base_half_angle) < math.pi:
@@ -183,7 +182,7 @@ class Gear:
             raise InputError(
                 f"[{name}] {tool} with profile_shift {spec.profile_shift:g}: the generated root folds back on itself; a larger {'cutter' if spec.internal else 'rack'} tip radius or less shift would not"
             )
-        if angle.max() >= 0.5 * pitch_angle or self.root_half_angle >= 0.5 * pitch_angle:
+        if angle.max() >= 0.5 * self.pitch_angle or self.root_half_angle >= 0.5 * self.pitch_angle:
             raise InputError(
                 f"[{name}] the {'cutter' if spec.internal else 'rack'} cuts the tooth off at its root (undercut past the centre line); more teeth or more profile_shift would leave one"
             )
