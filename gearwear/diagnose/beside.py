@@ -115,11 +115,12 @@ class Beside:
 
     def fit(self, which: Ints) -> tuple[Floats, float]:
         """Amplitudes of the fit on columns `which`, and the weighted sum of squares that it leaves."""
-        if len(which) == 0:
-            return np.zeros(0), self.square
-        scaled, root, moment = self._scaled(which)
-        amplitudes = np.linalg.solve(scaled, moment / root) / root
-        return amplitudes, float(self.square - amplitudes @ moment)
+        amplitudes, seen = np.zeros(len(which)), self.place[which] != NOTHING
+        if not seen.any():
+            return amplitudes, self.square
+        scaled, root, moment = self._scaled(which[seen])
+        amplitudes[seen] = np.linalg.solve(scaled, moment / root) / root
+        return amplitudes, float(self.square - amplitudes[seen] @ moment)
 
     def _scaled(self, which: Ints) -> tuple[Floats, Floats, Floats]:
         """The information of columns `which` in the lengths of the whole columns, with the ridge; these lengths, and the moment."""
@@ -131,6 +132,7 @@ class Beside:
 
     def beside(self, which: Ints) -> Beside:
         """The same beside columns `which` too."""
+        which = which[self.place[which] != NOTHING]
         scaled, root, aim = self._scaled(which)
         across = self._across(self.place[which]) / root[:, None]
         # Of columns that the others span rounding may leave less than nothing, which has no factor of Cholesky's.

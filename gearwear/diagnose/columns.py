@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearwear.arrays import Floats, Ints
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
 from gearwear.placing.cells import CellGrid
 
@@ -110,6 +110,13 @@ class CellColumns:
     def cuts(self) -> Ints:
         """First cell of each stretch."""
         return np.array([stretch.rows.start for stretch in self.stretches], dtype=np.int64)
+
+    def seen(self, cells: Bools) -> Bools:
+        """(p,) which columns are not zero on all of some cells (m,)."""
+        result = np.zeros(self.count, dtype=np.bool_)
+        for stretch in self.stretches:
+            result[stretch.which] |= stretch.values[cells[stretch.rows]].any(axis=0)
+        return result
 
     def put(self, place: Ints, out: Floats) -> None:
         """Write columns into those of `out` (m, q), which is zero there: column i into `place[i]`, where that is not negative."""

@@ -78,6 +78,10 @@ class Dictionary:
             start += block.count
         return result[rows]
 
+    def seen(self, cells: Bools) -> Bools:
+        """(p,) which columns are not zero on all of some cells (m,)."""
+        return np.concatenate([block.seen(cells) for block in self.blocks])
+
     def with_columns(self, block: Floats | CellColumns) -> Dictionary:
         """The dictionary with columns (m, q) behind its own."""
         columns = block if isinstance(block, CellColumns) else CellColumns.of(block, self.first.cuts)

@@ -13,10 +13,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import TIP, SurfacePoints
 from gearwear.diagnose.columns import CellColumns, cuts_of
 from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.dictionary import Dictionary
+from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.effects.each_tooth import EachTooth, teeth_with_amounts
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import CellGrid, cells_of
@@ -47,8 +50,15 @@ def few_teeth(grid: CellGrid, points: SurfacePoints) -> Bools:
     return kept
 
 
-def on_few_cells(fit: Fit, sound: Bools, noise: float) -> tuple[Fit, Bools]:
+def leaves_teeth_out(fit: Fit) -> bool:
+    """Whether `on_few_cells` leaves teeth out."""
+    return not few_teeth(few_rows(fit.cells.grid), fit.cells.points).all()
+
+
+def on_few_cells(fit: Fit, sound: Bools, noise: float, context: Context) -> tuple[Fit, Bools]:
     """A fit on few cells, and which of these (m,) have anything in them.
+
+    Where teeth are left out, what each tooth has of its own is an amount of each that is left, mean 0 over these: columns of the others are 0.
 
     Parameters
     ----------
@@ -57,6 +67,7 @@ def on_few_cells(fit: Fit, sound: Bools, noise: float) -> tuple[Fit, Bools]:
         Cells that a fit may use: the others come into none.
     noise : float
         Scatter of points, mm.
+    context : Context
     """
     grid = few_rows(fit.cells.grid)
     kept = few_teeth(grid, fit.cells.points)
@@ -69,10 +80,18 @@ def on_few_cells(fit: Fit, sound: Bools, noise: float) -> tuple[Fit, Bools]:
     share = fit.cells.count[rows] / cells.count[into[rows]]
     mean = csr_matrix((share, (into[rows], rows)), shape=(grid.count, len(sound)))
     dictionary, known = fit.dictionary, fit.covariance
+    on_teeth = fit.cells.points.surface <= TIP
+    less, none = _of_teeth_kept(dictionary, context, np.unique(fit.cells.points.tooth[kept & on_teeth]))
+    taken_off = {int(column): mean @ dictionary.take(column[None])[:, 0] for column in np.unique(less[less >= 0])}
 
     def averaged() -> Iterator[Floats]:
         for start in range(0, dictionary.count, TOGETHER):
-            yield mean @ dictionary.take(np.arange(start, min(start + TOGETHER, dictionary.count)))
+            which = np.arange(start, min(start + TOGETHER, dictionary.count))
+            columns = mean @ dictionary.take(which)
+            for column, values in taken_off.items():
+                columns[:, less[which] == column] -= values[:, None]
+            columns[:, none[which]] = 0.0
+            yield columns
 
     # Of the teeth that are left out nothing is seen: stretches are as much longer.
     columns = CellColumns.gathered(averaged(), cuts_of(grid, float(kept.mean())), TOGETHER)
@@ -87,3 +106,17 @@ def on_few_cells(fit: Fit, sound: Bools, noise: float) -> tuple[Fit, Bools]:
     )
     few = replace(dictionary, first=columns, more=())
     return Fit(cells, mean @ fit.target, few, cells.seen, covariance), cells.seen
+
+
+def _of_teeth_kept(dictionary: Dictionary, context: Context, kept: Ints) -> tuple[Ints, Bools]:
+    """Of what each tooth has of its own, where some are `kept`: which column is taken off each, (p,), -1 for none, so that the last that is kept has minus the
+    sum of the others' in place of one that is not; and which columns are left out, (p,)."""
+    less, none = np.full(dictionary.count, -1), np.zeros(dictionary.count, dtype=np.bool_)
+    *others, last = teeth_with_amounts(context)
+    there = np.isin(others, kept)
+    for candidate in dictionary.candidates if not (there.all() and last in kept) else ():
+        if isinstance(candidate.effect, EachTooth):
+            own, none[candidate.columns] = candidate.columns[there], ~there
+            if last not in kept and len(own):
+                less[own[:-1]], none[own[-1]] = own[-1], True
+    return less, none

@@ -27,7 +27,7 @@ from gearwear.diagnose.columns import CellColumns, cuts_among
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
-from gearwear.diagnose.few_cells import on_few_cells
+from gearwear.diagnose.few_cells import leaves_teeth_out, on_few_cells
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.flank_columns import (
     any_profile,
@@ -77,7 +77,10 @@ def side_costs(
         A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
     model = problem.with_offsets(model)
-    fit, sound = on_few_cells(fit, _believed(fit.cells, problem.context, noise), noise)
+    teeth_left_out = leaves_teeth_out(fit)
+    fit, sound = on_few_cells(fit, _believed(fit.cells, problem.context, noise), noise, problem.context)
+    if teeth_left_out:  # what each tooth has of its own pays for the teeth that are left
+        problem = fit.problem(problem.unit, problem.context, problem.always)
     scan = _Scan.of(fit, problem, model, noise, sound)
     shared, price = made_profiles(fit.cells)
     by_side = on_each_side(fit.cells, shared), np.tile(price, len(Side))
@@ -181,15 +184,20 @@ class _Scan:
         return np.flatnonzero(self.sound)
 
     @cached_property
+    def _seen(self) -> Bools:
+        """Columns of the dictionary that are not zero on all cells that a fit may use."""
+        return self.fit.dictionary.seen(self.sound)
+
+    @cached_property
     def _cuts(self) -> Ints:
         return cuts_among(self.fit.dictionary.first.cuts, self.rows)
 
     def columns(self, model: Model) -> Floats:
-        """Columns of the pose and of a model, on the cells that a fit may use."""
+        """Columns of the pose and of a model, on the cells that a fit may use; without those of teeth that have none of these."""
         key = _columns_of(model)
         if key not in self._taken:
             which = np.concatenate([self.fit.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
-            self._taken[key] = self.fit.dictionary.take(which, self.rows)
+            self._taken[key] = self.fit.dictionary.take(which[self._seen[which]], self.rows)
             for old in list(self._taken)[:-REMEMBERED]:
                 del self._taken[old]
         return self._taken[key]

@@ -33,7 +33,7 @@ class EachTooth(CatalogueEffect):
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         # Tooth by tooth, so that one whose amplitude is unknown (nan) leaves the others known.
         value, std = np.full((2, context.gear.teeth), np.nan)
-        present = _present(context)
+        present = teeth_with_amounts(context)
         value[present] = [*amplitudes, -amplitudes.sum()]
         std[present] = np.sqrt(np.maximum([*np.diag(covariance), covariance.sum()], 0.0))
         (amount,) = self.parameters
@@ -42,13 +42,13 @@ class EachTooth(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         own = np.zeros((len(points), context.gear.teeth))
         own[np.arange(len(points)), points.tooth] = self.deviation(points, context, shape)
-        *others, last = _present(context)
+        *others, last = teeth_with_amounts(context)
         return own[:, others] - own[:, [last]]
 
     def amounts(self, amplitudes: Floats, context: Context) -> Floats:
         """Of each tooth, (teeth,), from the amplitudes; 0 of one that has none."""
         result = np.zeros(context.gear.teeth)
-        result[_present(context)] = [*amplitudes, -amplitudes.sum()]
+        result[teeth_with_amounts(context)] = [*amplitudes, -amplitudes.sum()]
         return result
 
     def deviation(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
@@ -56,7 +56,7 @@ class EachTooth(CatalogueEffect):
         raise NotImplementedError
 
 
-def _present(context: Context) -> list[int]:
+def teeth_with_amounts(context: Context) -> list[int]:
     """Teeth that have an amount: two of them at least, or all."""
     present = [tooth for tooth in range(context.gear.teeth) if tooth not in context.absent]
     return present if len(present) > 1 else list(range(context.gear.teeth))

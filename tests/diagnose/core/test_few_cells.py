@@ -23,11 +23,15 @@ from tests.diagnose.core.test_worn_sides import binned
 LEAST = 3000
 
 
+def context_of(cells):
+    return make_context(cells, np.eye(3), False)
+
+
 @pytest.fixture(scope="module")
 def fit():
     cells = binned(())
     effects = tuple(effect for effect in catalogue() if effect.searched)[:12]
-    dictionary = build_dictionary(cells, effects, make_context(cells, np.eye(3), False))
+    dictionary = build_dictionary(cells, effects, context_of(cells))
     target = dictionary.columns @ np.random.default_rng(1).normal(size=dictionary.count)
     white = CellCovariance(cells.grid, 1e-4 / np.maximum(cells.count, 1.0), 1e-5, 0.5, 0.5)
     return Fit(cells, target, dictionary, cells.seen, white)
@@ -65,7 +69,7 @@ def test_columns_that_other_sides_worn_leave_as_they_are_are_kept(worn):
 
 
 def test_a_fit_on_few_cells_is_left_as_it_is(fit):
-    assert few_cells.on_few_cells(fit, fit.cells.seen, 0.01)[0] is fit
+    assert few_cells.on_few_cells(fit, fit.cells.seen, 0.01, context_of(fit.cells))[0] is fit
 
 
 def test_what_columns_explain_they_explain_on_fewer_cells(fit, monkeypatch):
@@ -73,7 +77,7 @@ def test_what_columns_explain_they_explain_on_fewer_cells(fit, monkeypatch):
     monkeypatch.setattr(few_cells, "ENOUGH_CELLS", LEAST)
     sound = fit.cells.seen & (fit.cells.points.tooth != 4)
     with in_force(replace(RULES, rows_of_sides=3)):
-        few, there = few_cells.on_few_cells(fit, sound, 0.01)
+        few, there = few_cells.on_few_cells(fit, sound, 0.01, context_of(fit.cells))
     assert 3 <= few.cells.grid.rows <= fit.cells.grid.rows // 2
     assert few.cells.count.sum() == pytest.approx(fit.cells.count[sound].sum())
     assert not there[few.cells.points.tooth == 4].any()
@@ -86,8 +90,29 @@ def test_teeth_are_left_out_where_rows_are_few_already(fit, monkeypatch):
     """The first look at a large scan has few rows from the start."""
     with in_force(replace(RULES, rows_of_sides=fit.cells.grid.rows)):
         monkeypatch.setattr(few_cells, "ENOUGH_CELLS", fit.cells.grid.count // 3)
-        few, there = few_cells.on_few_cells(fit, fit.cells.seen, 0.01)
+        few, there = few_cells.on_few_cells(fit, fit.cells.seen, 0.01, context_of(fit.cells))
     assert few.cells.grid is fit.cells.grid
     on_teeth = few.cells.points.surface[there] <= TIP
     assert set(few.cells.points.tooth[there][on_teeth]) == {0, 3, 6, 9}
     assert len(few.dictionary.first.cuts) < len(fit.dictionary.first.cuts)  # stretches of as many cells that are seen
+
+
+@pytest.mark.parametrize("every", [3, 11])
+def test_teeth_that_are_left_have_amounts_of_mean_0(monkeypatch, every):
+    """As those of a gear of which the others are missing: so many amounts are paid for, and whether they are possible asks nothing of a tooth that is not
+    there. Of 12 teeth the last is left out, or it is one of two that are left."""
+    cells = binned(())
+    context, white = context_of(cells), CellCovariance(cells.grid, np.ones(len(cells.seen)), 1e-5, 0.5, 0.5)
+    fit = Fit(cells, np.zeros(len(cells.seen)), build_dictionary(cells, (PITCH,), context), cells.seen, white)
+    kept = list(range(0, 12, every))
+    monkeypatch.setattr(few_cells, "few_rows", lambda grid: grid)
+    monkeypatch.setattr(few_cells, "ENOUGH_CELLS", cells.grid.count / every)
+    few, there = few_cells.on_few_cells(fit, cells.seen, 0.01, context)
+    assert few_cells.leaves_teeth_out(fit) and set(np.unique(few.cells.points.tooth[there])) >= set(kept)
+    absent = replace(context, absent=frozenset(range(12)) - set(kept))
+    for candidate in few.dictionary.candidates:
+        own, on_teeth = few.dictionary.take(candidate.columns), there & (few.cells.points.surface <= TIP)
+        of_these = PITCH.basis(few.cells.points.take(on_teeth), absent, candidate.shape)
+        seen = few.dictionary.seen(there)[candidate.columns]
+        assert seen.sum() == len(kept) - 1
+        np.testing.assert_allclose(own[on_teeth][:, seen], of_these, atol=1e-12)
