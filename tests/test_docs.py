@@ -36,6 +36,7 @@ NUMERICAL = {
     "BATCH",
     "BORDERS",
     "ENOUGH_CELLS",
+    "LOOK_CELLS",
     "FEW",
     "FEWEST_FREE",
     "FEWEST_RINGS",

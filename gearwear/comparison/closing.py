@@ -140,7 +140,7 @@ class _Scan:
     def looked_at(self) -> Look | None:
         """The loop on few cells, which tell as well whether the scan must be located again, and by what; None where there are no more than these."""
         rough = rough_grid(self.grid)
-        return None if rough is None else self._closed_on(rough, None)
+        return None if rough is None else self._closed_on(rough, None, first=True)
 
     def explained(self, look: Look | None = None) -> Loop:
         """The loop closed on as many cells as it needs, by what a look at fewer left out."""
@@ -149,7 +149,7 @@ class _Scan:
             return self._loop(self.cells, self.measured.context)
         return carried(*self._closed_on(coarse, look), self.cells, self.measured.noise)
 
-    def _closed_on(self, coarse: CellGrid, look: Look | None) -> Look:
+    def _closed_on(self, coarse: CellGrid, look: Look | None, first: bool = False) -> Look:
         measured = self.measured
         if measured.streamed is not None:
             pooled = self.cells.pooled(coarse)
@@ -158,13 +158,21 @@ class _Scan:
         else:
             pooled = _with_scatter(self.located, self.rest, coarse)
         context = replace(measured.context, row_height=coarse.row_height, fillet_edges=tuple(pooled.fillet_edges.tolist()))
-        return self._loop(pooled, context, None if look is None else left_out(*look, pooled)), pooled
+        return self._loop(pooled, context, None if look is None else left_out(*look, pooled), first), pooled
 
-    def _loop(self, cells: Cells, context: Context, out: Bools | None = None) -> Loop:
+    def _loop(self, cells: Cells, context: Context, out: Bools | None = None, first: bool = False) -> Loop:
         measured = self.measured
         free = not measured.root.fits_design
         return close_loop(
-            cells, measured.noise, context, root_free=free, worn=self.worn, out=out, begun=self.begun, ruled_out=self.ruled_out
+            cells,
+            measured.noise,
+            context,
+            root_free=free,
+            worn=self.worn,
+            out=out,
+            begun=self.begun,
+            ruled_out=self.ruled_out,
+            look=first,
         )
 
     def located_again(self, loop: Loop) -> tuple[_Scan, Relocation]:

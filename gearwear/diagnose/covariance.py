@@ -51,11 +51,10 @@ class CellCovariance:
         if self.texture <= 0.0:
             return np.asarray(result, dtype=np.float64)
         for block, values in _sheets(self.grid, columns):
-            rows = _powers(self.row_step, values.shape[1])
-            across = _powers(self.column_step, values.shape[2])
-            spread = np.einsum("ij,gjkp->gikp", rows, values, optimize=True)
-            spread = np.einsum("kl,gilp->gikp", across, spread, optimize=True)
-            result[block] += self.texture * spread.reshape(-1, columns.shape[1])
+            groups, rows, across, count = values.shape
+            spread = _powers(self.row_step, rows) @ values.reshape(groups, rows, across * count)
+            spread = (self.texture * _powers(self.column_step, across)) @ spread.reshape(groups * rows, across, count)
+            result[block] += spread.reshape(-1, count)
         return np.asarray(result, dtype=np.float64)
 
     def on_side(self, side: tuple[int, int], values: Floats) -> Floats:

@@ -2,7 +2,7 @@
 
 Which sides are worn throughout is told by a profile that all flanks of a side share, and by how much of it each has: means over many teeth, smooth along
 z. Columns and deviations are averaged alike, so that a fit loses nothing but what goes up and down within a cell; and what fifty teeth do not show of all
-is no wear of a whole side.
+is no wear of a whole side. Half as many tell as well where there is no doubt.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ from gearwear.placing.cells import CellGrid, cells_of
 
 ENOUGH_CELLS = 10_000
 """Cells beyond which rows are put together, and then teeth left out."""
+LOOK_CELLS, FEWEST_TEETH = 5_000, 24
+"""The same at a first look, which is asked again where it leaves a doubt, and the teeth that it leaves in any case; numerical."""
 TOGETHER = 64
 """Columns that are averaged at a time; numerical."""
 
@@ -43,19 +45,20 @@ def few_rows(grid: CellGrid) -> CellGrid:
     return few
 
 
-def few_teeth(grid: CellGrid, points: SurfacePoints) -> Bools:
-    """Points on every n-th tooth, and off the teeth, where a grid with few rows has n times as many cells as are needed."""
-    every = max(1, round(grid.count / ENOUGH_CELLS))
+def few_teeth(grid: CellGrid, points: SurfacePoints, look: bool = False) -> Bools:
+    """Points on every n-th tooth, and off the teeth, where a grid with few rows has n times as many cells as are needed, or as a first look needs."""
+    every = min(round(grid.count / LOOK_CELLS), grid.gear.teeth // FEWEST_TEETH) if look else 0
+    every = max(1, every, round(grid.count / ENOUGH_CELLS))
     kept: Bools = (points.tooth % every == 0) | (points.surface > TIP)
     return kept
 
 
-def leaves_teeth_out(fit: Fit) -> bool:
+def leaves_teeth_out(fit: Fit, look: bool = False) -> bool:
     """Whether `on_few_cells` leaves teeth out."""
-    return not few_teeth(few_rows(fit.cells.grid), fit.cells.points).all()
+    return not few_teeth(few_rows(fit.cells.grid), fit.cells.points, look).all()
 
 
-def on_few_cells(fit: Fit, sound: Bools, noise: float, context: Context) -> tuple[Fit, Bools]:
+def on_few_cells(fit: Fit, sound: Bools, noise: float, context: Context, look: bool = False) -> tuple[Fit, Bools]:
     """A fit on few cells, and which of these (m,) have anything in them.
 
     Where teeth are left out, what each tooth has of its own is an amount of each that is left, mean 0 over these: columns of the others are 0.
@@ -68,9 +71,11 @@ def on_few_cells(fit: Fit, sound: Bools, noise: float, context: Context) -> tupl
     noise : float
         Scatter of points, mm.
     context : Context
+    look : bool
+        Whether it is a first look.
     """
     grid = few_rows(fit.cells.grid)
-    kept = few_teeth(grid, fit.cells.points)
+    kept = few_teeth(grid, fit.cells.points, look)
     if grid is fit.cells.grid and kept.all():
         return fit, sound
     rows = np.flatnonzero(sound & kept)
@@ -89,8 +94,11 @@ def on_few_cells(fit: Fit, sound: Bools, noise: float, context: Context) -> tupl
             which = np.arange(start, min(start + TOGETHER, dictionary.count))
             columns = mean @ dictionary.take(which)
             for column, values in taken_off.items():
-                columns[:, less[which] == column] -= values[:, None]
-            columns[:, none[which]] = 0.0
+                from_these = np.flatnonzero(less[which] == column)
+                if len(from_these):
+                    columns[:, from_these] -= values[:, None]
+            if none[which].any():
+                columns[:, none[which]] = 0.0
             yield columns
 
     # Of the teeth that are left out nothing is seen: stretches are as much longer.

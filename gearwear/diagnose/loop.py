@@ -81,6 +81,7 @@ def close_loop(
     out: Bools | None = None,
     begun: Loop | None = None,
     ruled_out: frozenset[frozenset[Side]] = frozenset(),
+    look: bool = False,
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -104,6 +105,8 @@ def close_loop(
         What was found before the scan was located again: the search begins with its effects as well as with none.
     ruled_out : frozenset of frozenset of Side
         Sides that a first look showed not to be worn throughout together (`Loop.sides_ruled_out`).
+    look : bool
+        Whether this is a first look.
 
     Returns
     -------
@@ -141,7 +144,7 @@ def close_loop(
         for face in context.faces:
             told |= (cells.points.surface <= FILLET) & face.worn(cells.points, cells.grid.row_height)
         others_alone = replace(plain.fit, cells=cells.without(told)) if told.any() else plain.fit
-        costs = side_costs(others_alone, plain.problem, plain.model, noise, ruled_out).beside(ran)
+        costs = side_costs(others_alone, plain.problem, plain.model, noise, ruled_out, look).beside(ran)
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == alone else searched_without(sides), noise, always)

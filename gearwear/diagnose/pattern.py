@@ -220,30 +220,36 @@ def _order_columns(teeth: int, order: int) -> Floats:
     return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def _order_map(sheet: Floats, order: int, width: float, left_out: int | None = None) -> Floats:
+def _order_map(sheet: Floats, order: int, width: float) -> Floats:
     """Smoothed pattern of one order on every tooth, same shape as `sheet` (teeth, …, rows, columns)."""
-    basis = _order_columns(sheet.shape[0], order)
-    weight = np.isfinite(sheet).astype(np.float64)
-    if left_out is not None:
-        weight[left_out] = 0.0
-    value = np.nan_to_num(sheet) * weight
-    moment = np.tensordot(basis.T, value, axes=1)
-    information = np.einsum("ti,tj,t...->...ij", basis, basis, weight)
-    information = information + 1e-3 * np.eye(basis.shape[1])
-    amplitude = np.linalg.solve(information, np.moveaxis(moment, 0, -1)[..., None])[..., 0]
-    spread = [0.0] * (amplitude.ndim - 3) + [width, width, 0.0]
-    amplitude = ndimage.gaussian_filter(amplitude, spread, mode="nearest")
+    basis, value, weight = _order_columns(sheet.shape[0], order), np.nan_to_num(sheet), np.isfinite(sheet).astype(np.float64)
+    amplitude = _smoothed(*_order_sums(basis, value, weight), width)
     return np.asarray(np.tensordot(basis, np.moveaxis(amplitude, -1, 0), axes=1), dtype=np.float64)
+
+
+def _order_sums(basis: Floats, value: Floats, weight: Floats) -> tuple[Floats, Floats]:
+    """Moment (…, k) and information (…, k, k) of the waves of an order (teeth, k) in values (teeth, …) that are 0 where they have no weight."""
+    moment = np.tensordot(basis.T, value, axes=1)
+    return np.moveaxis(moment, 0, -1), np.einsum("ti,tj,t...->...ij", basis, basis, weight)
+
+
+def _smoothed(moment: Floats, information: Floats, width: float) -> Floats:
+    """Amplitudes (…, rows, columns, k) of the waves of an order with these sums, smoothed over so many cells."""
+    amplitude = np.linalg.solve(information + 1e-3 * np.eye(moment.shape[-1]), moment[..., None])[..., 0]
+    spread = [0.0] * (amplitude.ndim - 3) + [width, width, 0.0]
+    return np.asarray(ndimage.gaussian_filter(amplitude, spread, mode="nearest"), dtype=np.float64)
 
 
 def _gain_on_left_out_teeth(sides: Floats, order: int, width: float) -> tuple[float, float]:
     """Fall of the mean square of teeth the pattern was not made from, mm², and the same in its own standard errors."""
-    gains = []
-    for tooth in range(sides.shape[0]):
-        predicted = _order_map(sides, order, width, left_out=tooth)[tooth]
-        own = sides[tooth]
-        good = np.isfinite(own)
-        if good.sum() > 10:
+    gains, basis = list[float](), _order_columns(sides.shape[0], order)
+    value, weight = np.nan_to_num(sides), np.isfinite(sides).astype(np.float64)
+    moment, information = _order_sums(basis, value, weight)
+    for wave, own, seen in zip(basis, value, weight, strict=True):
+        good = seen > 0.0
+        if good.sum() > 10:  # the sums of the others are those of all without its own
+            others = moment - own[..., None] * wave, information - seen[..., None, None] * np.outer(wave, wave)
+            predicted = _smoothed(*others, width) @ wave
             gains.append(float(np.mean(own[good] ** 2 - (own[good] - predicted[good]) ** 2)))
     if len(gains) < 4:
         return 0.0, 0.0

@@ -55,7 +55,12 @@ REMEMBERED = 8
 
 
 def side_costs(
-    fit: Fit, problem: Problem, model: Model, noise: float, ruled_out: frozenset[frozenset[Side]] = frozenset()
+    fit: Fit,
+    problem: Problem,
+    model: Model,
+    noise: float,
+    ruled_out: frozenset[frozenset[Side]] = frozenset(),
+    look: bool = False,
 ) -> SideCosts:
     """What it costs that no side, the left, the right or both are worn throughout.
 
@@ -70,6 +75,8 @@ def side_costs(
         Scatter of points, mm.
     ruled_out : frozenset of frozenset of Side
         Hypotheses that are not asked about.
+    look : bool
+        Whether it is a first look, of few teeth, and asked again where it leaves a doubt.
 
     Returns
     -------
@@ -77,8 +84,8 @@ def side_costs(
         A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
     model = problem.with_offsets(model)
-    teeth_left_out = leaves_teeth_out(fit)
-    fit, sound = on_few_cells(fit, _believed(fit.cells, problem.context, noise), noise, problem.context)
+    teeth_left_out = leaves_teeth_out(fit, look)
+    fit, sound = on_few_cells(fit, _believed(fit.cells, problem.context, noise), noise, problem.context, look)
     if teeth_left_out:  # what each tooth has of its own pays for the teeth that are left
         problem = fit.problem(problem.unit, problem.context, problem.always)
     scan = _Scan.of(fit, problem, model, noise, sound)

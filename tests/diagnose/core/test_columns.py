@@ -42,6 +42,8 @@ def test_columns_come_back_as_they_were():
     kept.put(np.array([1, -1, -1, 0, -1, -1, -1, -1, 2]), out)
     np.testing.assert_array_equal(out, values[:, [3, 0, 8]])
     np.testing.assert_allclose(kept.times(np.arange(9.0)), values @ np.arange(9.0), rtol=1e-13, atol=1e-14)
+    some = np.random.default_rng(1).random(ROWS) < 0.1
+    np.testing.assert_array_equal(kept.seen(some), values[some].any(axis=0))
     assert (kept.rows, kept.count) == values.shape and kept.cuts.tolist() == CUTS.tolist()
     assert sum(stretch.values.size for stretch in kept.stretches) < 0.7 * values.size
 

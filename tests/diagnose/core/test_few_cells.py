@@ -97,6 +97,17 @@ def test_teeth_are_left_out_where_rows_are_few_already(fit, monkeypatch):
     assert len(few.dictionary.first.cuts) < len(fit.dictionary.first.cuts)  # stretches of as many cells that are seen
 
 
+@pytest.mark.parametrize(("fewest", "kept"), [(4, {0, 3, 6, 9}), (6, {0, 2, 4, 6, 8, 10}), (7, set(range(12)))])
+def test_a_first_look_is_at_so_many_teeth_at_least(fit, monkeypatch, fewest, kept):
+    """What it leaves open is asked again of more; without it all are asked."""
+    monkeypatch.setattr(few_cells, "LOOK_CELLS", fit.cells.grid.count // 3)
+    monkeypatch.setattr(few_cells, "FEWEST_TEETH", fewest)
+    points = fit.cells.points
+    at_look, asked = (few_cells.few_teeth(fit.cells.grid, points, look) for look in (True, False))
+    assert set(points.tooth[at_look & (points.surface <= TIP)]) == kept and at_look[points.surface > TIP].all()
+    assert asked.all()
+
+
 @pytest.mark.parametrize("every", [3, 11])
 def test_teeth_that_are_left_have_amounts_of_mean_0(monkeypatch, every):
     """As those of a gear of which the others are missing: so many amounts are paid for, and whether they are possible asks nothing of a tooth that is not

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gearwear.diagnose.pattern import Pattern, find_patterns, joined, order_share
+from gearwear.diagnose.pattern import Pattern, _gain_on_left_out_teeth, _order_map, find_patterns, joined, order_share
 from tests.diagnose.core.toy import TEETH, grid, sides_of
 
 NOISE, COUNT = 0.005, 9.0
@@ -130,3 +130,19 @@ def test_what_was_found_of_one_order_in_two_steps_is_one_structure():
     assert whole[0].p_value == 1e-12
     assert whole[1].rms == pytest.approx(0.002 / np.sqrt(2.0), rel=1e-9)
     np.testing.assert_allclose(one.sides(whole[0].field), first + second, atol=1e-15)
+
+
+@pytest.mark.parametrize("order", [0, 2, 6])
+def test_a_tooth_is_left_out_of_the_sums(order):
+    """As where none of its cells was seen: it takes no part in the pattern that it is held against."""
+    one, rng = grid(), np.random.default_rng(order)
+    sheets = rng.normal(size=sides_of(one).tooth.shape)
+    sheets[rng.random(sheets.shape) < 0.1] = np.nan
+    gains = []
+    for tooth in range(TEETH):
+        without = sheets.copy()
+        without[tooth] = np.nan
+        gains.append(np.nanmean(sheets[tooth] ** 2 - (sheets[tooth] - _order_map(without, order, 1.0)[tooth]) ** 2))
+    mean, errors = _gain_on_left_out_teeth(sheets, order, 1.0)
+    assert mean == pytest.approx(np.mean(gains), rel=1e-9)
+    assert errors == pytest.approx(np.mean(gains) / np.std(gains, ddof=1) * np.sqrt(TEETH), rel=1e-9)

@@ -88,15 +88,16 @@ def test_which_sides_are_worn_is_asked_again_where_there_is_doubt(depth, asked, 
     measured = register(Design({"gear": Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0, rack_tip_radius=0.3))}), scan)
     for name, cells in (("ENOUGH_CELLS", FEWER), ("MOST_CELLS", FEWER), ("ROUGH_CELLS", FEWER // 2)):
         monkeypatch.setattr(pooled, name, cells)
-    costs = list[SideCosts]()
+    costs, looks = list[SideCosts](), list[bool]()
 
     def counted(*asked):
+        looks.append(asked[-1])
         costs.append(side_costs(*asked))
         return costs[-1]
 
     monkeypatch.setattr("gearwear.diagnose.loop.side_costs", counted)
     found = find_effects(measured)
-    assert len(costs) == asked
+    assert looks == [True, False][:asked]
     assert costs[0].beyond_doubt == (asked == 1)
     ruled_out = costs[0].ruled_out
     assert len(costs[0].by_sides) - len(ruled_out) == left_open
