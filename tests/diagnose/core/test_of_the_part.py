@@ -22,7 +22,7 @@ from tests.synthetic import Effect, SlidingWear
 
 @pytest.fixture(scope="module")
 def unworn():
-    return binned(())
+    return binned((), points=14_000)
 
 
 def along(cells):
@@ -128,7 +128,7 @@ def test_flanks_that_differ_on_both_sides_were_cut_so(unworn):
 )
 def test_a_side_is_worn_whatever_the_other_was_cut_to(form):
     """Left flanks slid by 60 µm, each tooth by its own share, right ones cut otherwise by 25 µm: neither made so, nor worn on both sides."""
-    worn = binned((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),))
+    worn = binned((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),), points=14_000)
     loop = explained(with_form(worn, -0.025 * form(along(worn)), frozenset({Side.RIGHT})))
     assert (loop.worn_sides, loop.others) == (LEFT, ())
 

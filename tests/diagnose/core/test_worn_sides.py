@@ -36,8 +36,8 @@ FROM_TOOTH_TO_TOOTH = tuple((1.0 + 0.3 * np.sin(np.arange(12) ** 2)).tolist())
 PATCHES = (Patch(1, 1, 80.0, (36.5, 42.5), (2.0, 11.0)), Patch(7, -1, 150.0, (36.5, 42.5), (2.0, 11.0)))
 
 
-def binned(wear, effects=(), seed=3):
-    scan = make_scan(Recipe(jitter=1.0, noise_um=6.0, pose="none", wear=wear, effects=effects).of_size(20_000), seed)
+def binned(wear, effects=(), seed=3, points=20_000):
+    scan = make_scan(Recipe(jitter=1.0, noise_um=6.0, pose="none", wear=wear, effects=effects).of_size(points), seed)
     located = locate(scan.points, PINION)
     return bin_points(located, CellGrid.for_scan(PINION, len(located)), clip=0.3)
 
