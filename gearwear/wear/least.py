@@ -72,10 +72,14 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
 
     def fitted(first: int) -> tuple[Floats, float]:
         """Weights of the atoms from `first` on, and the logarithm of their likelihood."""
-        weight, share = np.where(np.arange(len(atoms)) >= first, 1.0 / (len(atoms) - first), 0.0), number / total
-        for _ in range(STEPS):
-            weight = weight * (share / np.maximum(seen @ weight, 1e-300) @ seen)
-        return weight, float(number @ np.log(np.maximum(seen @ weight, 1e-300)))
+        of_some, share = np.ascontiguousarray(seen[:, first:]), number / total
+        weight = np.full(len(atoms) - first, 1.0 / (len(atoms) - first))
+        mixed, gain = np.empty(len(part)), np.empty_like(weight)
+        for _ in range(STEPS):  # in place: each step is two small products
+            np.maximum(of_some.dot(weight, out=mixed), 1e-300, out=mixed)
+            np.divide(share, mixed, out=mixed)
+            weight *= mixed.dot(of_some, out=gain)
+        return np.concatenate([np.zeros(first), weight]), float(number @ np.log(np.maximum(of_some @ weight, 1e-300)))
 
     # The highest least of all that the values allow: one that is low by luck is not taken for one that is low.
     free, best = fitted(0)
