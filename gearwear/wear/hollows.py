@@ -8,11 +8,12 @@ is that of the sections.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 from scipy import ndimage
+from scipy.sparse import csr_array
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
@@ -21,6 +22,7 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import infill, make_side_maps, rim
 from gearwear.wear.cell_means import CellMeans, CommonSurface
 from gearwear.wear.section_sums import SectionSums
+from gearwear.wear.surface import at_places
 
 ACROSS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])
 """Places across the band, in its half widths; numerical."""
@@ -91,14 +93,14 @@ def find_hollows(
     # The radius itself, and the middles of equal parts of the band.
     reaches = np.array([band.reach, *(band.reach + band.half * ACROSS)]).clip(gear.form_roll, gear.tip_roll)
     columns, rows = grid.flank * (reaches**2 - edges[0]) / (edges[1] - edges[0]), grid.place_of(band.heights)
-    along = dict[tuple[int, Side], _Arcs]()
+    along, at = dict[tuple[int, Side], _Arcs](), at_places(grid.rows, rows)
     for tooth, side in product(teeth.tolist(), Side):
         about = common.get(side.index)
         surface = means.surface(
             (tooth, side.index, slice(None), flank), wide[tooth, side.index, :, flank], None if about is None else about.surface
         )
         if surface is not None:
-            along[tooth, side] = _Arcs.of(gear.arc_per_depth * surface.along(rows, columns))
+            along[tooth, side] = _Arcs.of(gear.arc_per_depth * surface.along(columns), at)
     # No smooth surface follows the ridge at the pitch point, which is more or less sharp along the face; the flanks of a side have it in common.
     for side in worn:
         own = [tooth for tooth in teeth.tolist() if (tooth, side) in along]
@@ -114,46 +116,61 @@ def find_hollows(
 
 @dataclass(frozen=True, slots=True)
 class _Arcs:
-    """Arcs drawn for a flank, mm: of all those in parts of the band together no more than is asked.
+    """Arcs drawn for a flank, mm: of all those in parts of the band together no more than is asked, and by their coefficients along the face, which are
+    fewer than sections.
 
     Parameters
     ----------
-    at_radius, over_band : (draws, n_z) float
+    at_radius, over_band : (draws, n) float
         At the radius, and the mean of the parts of the band.
     expected : (1 + k, n_z) float
         Means over the draws, at the radius and in each part.
+    at : (n_z, n) float
+        What each coefficient weighs in each section.
+    shared : (1 + k, n_z) float
+        What flanks have in common, which is taken off.
     """
 
     at_radius: Floats
     over_band: Floats
     expected: Floats
+    at: Floats
+    shared: Floats
 
     @classmethod
-    def of(cls, arcs: Floats) -> _Arcs:
-        """Of arcs at the radius and in parts of the band, (1 + k, draws, n_z)."""
-        return cls(arcs[0].copy(), arcs[1:].mean(axis=0), arcs.mean(axis=1))
+    def of(cls, arcs: Floats, at: Floats) -> _Arcs:
+        """Of the coefficients of arcs at the radius and in parts of the band, (1 + k, draws, n)."""
+        expected = arcs.mean(axis=1) @ at.T
+        return cls(arcs[0].copy(), arcs[1:].mean(axis=0), expected, at, np.zeros_like(expected))
 
     def without(self, shared: Floats) -> _Arcs:
         """The same less what flanks have in common, (1 + k, n_z)."""
-        return _Arcs(self.at_radius - shared[0], self.over_band - shared[1:].mean(axis=0), self.expected - shared)
+        return replace(self, expected=self.expected - shared, shared=self.shared + shared)
+
+    def drawn(self) -> tuple[Floats, Floats]:
+        """In each section, (draws, n_z): at the radius, and over the band."""
+        return self.at_radius @ self.at.T - self.shared[0], self.over_band @ self.at.T - self.shared[1:].mean(axis=0)
 
 
 def _within(flanks: Sequence[_Arcs], number: Floats, made: Floats, width: int) -> tuple[Floats, Floats, Floats]:
     """Depth and its standard deviation, (n_z,), and spread of each flank, (2, n_z), of arcs drawn for the two flanks beyond those they were made with,
     (n_z,): at the radius, and in parts of the band. Sections have `number` (2, n_z) points."""
-    (draws, n), half = flanks[0].at_radius.shape, width // 2
+    arcs = [arc.drawn() for arc in flanks]
+    (draws, n), half = arcs[0][0].shape, width // 2
     at = np.arange(n)[:, None] + np.arange(-half, half + 1)
     inside, at = (at >= 0) & (at < n), at.clip(0, n - 1)
     over_band, spread = [], []
-    for arc, points in zip(flanks, number, strict=True):
+    for arc, (_, over), points in zip(flanks, arcs, number, strict=True):
         share = inside * (points[at] + 1e-6)  # the mean is that of the points
-        share = share / share.sum(axis=1, keepdims=True)
+        windows = csr_array(
+            ((share / share.sum(axis=1, keepdims=True)).ravel(), at.ravel(), np.arange(n + 1) * at.shape[1]), (n, n)
+        )
 
-        def mean(values: Floats, share: Floats = share) -> Floats:
-            """Over each window of values (..., n_z)."""
-            return np.asarray((values[..., at] * share).sum(axis=-1), dtype=np.float64)
+        def mean(values: Floats, windows: csr_array = windows) -> Floats:
+            """Over each window of values (k, n_z)."""
+            return np.asarray((windows @ values.T).T, dtype=np.float64)
 
-        over_band.append(mean(arc.over_band + 0.5 * made))
+        over_band.append(mean(over + 0.5 * made))
         drawn = arc.expected[1:]
         about = drawn - np.outer(ACROSS, ACROSS @ drawn) / (ACROSS @ ACROSS)  # the straight line is taken out
         spread.append(np.sqrt(np.maximum(mean(about**2).mean(axis=0) - mean(about).mean(axis=0) ** 2, 0.0)))
@@ -166,7 +183,8 @@ def _within(flanks: Sequence[_Arcs], number: Floats, made: Floats, width: int) -
     quarter, variance = draws // 4, np.zeros(n)
     for turned, still in ((0, 1), (1, 0)):
         at_radius, band = (
-            np.roll(values[turned], quarter, axis=0) + values[still] for values in ([arc.at_radius for arc in flanks], over_band)
+            np.roll(values[turned], quarter, axis=0) + values[still]
+            for values in ([at_radius for at_radius, _ in arcs], over_band)
         )
         variance += 0.5 * (band - ndimage.minimum_filter1d(at_radius + made, reach, axis=1, mode="nearest")).var(axis=0)
     return depth, np.sqrt(variance), np.stack(spread)

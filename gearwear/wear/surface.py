@@ -187,12 +187,12 @@ class SideSurface:
         least += self.level
         return float(least.mean()), float(least.std())
 
-    def along(self, rows: Floats, columns: Floats) -> Floats:
-        """Drawn surfaces on lines along the face, (k, `DRAWS`, n) mm: at places (n,) counted in rows and (k,) counted in columns."""
+    def along(self, columns: Floats) -> Floats:
+        """Coefficients of drawn surfaces on lines along the face, (k, `DRAWS`, n) mm, at places (k,) counted in columns: on the lines the surfaces have
+        ``at_places(rows, places)`` times as much."""
         number, drawn = _numbers(self.seen.shape), self._drawn(self.seen.shape)
-        of_rows = np.tensordot(_at_places(self.seen.shape[1], columns), drawn[number], axes=(1, 1))
-        over = np.tensordot(_at_places(self.seen.shape[0], rows), of_rows, axes=(1, 1))
-        return np.asarray(np.moveaxis(over, 0, 2) + self.level, dtype=np.float64)
+        of_rows = np.tensordot(at_places(self.seen.shape[1], columns), drawn[number], axes=(1, 1))
+        return np.ascontiguousarray(np.moveaxis(of_rows, 1, 2)) + self.level
 
     def _drawn(self, shape: tuple[int, ...]) -> Floats:
         """Coefficients of surfaces from N(c, A⁻¹), without the level, (n, `DRAWS`); half of them from either end of the face: which comes first does not
@@ -268,7 +268,7 @@ def _over_windows(count: int, wide: float) -> tuple[tuple[Ints, Ints], Floats]:
     return (cells[0].clip(0, count - 1), cells[1].clip(0, count - 1)), np.asarray((ends[0] - ends[1]) / wide, dtype=np.float64)
 
 
-def _at_places(count: int, places: Floats) -> Floats:
+def at_places(count: int, places: Floats) -> Floats:
     """What each of the coefficients of a row of `count` cells weighs at places (k,) counted in cells, (k, n)."""
     if count == 1:
         return np.ones((len(places), 1))

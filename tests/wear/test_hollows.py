@@ -87,24 +87,40 @@ def test_an_unworn_gear_is_asked_for_no_hollow():
 ALIKE = np.ones((2, 41))
 
 
+def in_sections(values):
+    """Arcs of which each coefficient is that of a section."""
+    return _Arcs.of(values, np.eye(values.shape[-1]))
+
+
 def test_within_a_window_a_parabola_hides_what_its_mean_says():
     """Of a k², k = −h … h: the mean is a h (h + 1) / 3, the least 0; two flanks alike hide twice that."""
     a, half, n = 0.001, 4, 41
     parabola, flat = a * (np.arange(n) - 20.0) ** 2, np.zeros(n)
     curve = np.tile(parabola, (1 + len(ACROSS), 8, 1))
-    depth, std, spread = _within([_Arcs.of(curve)] * 2, ALIKE, flat, 2 * half + 1)
+    depth, std, spread = _within([in_sections(curve)] * 2, ALIKE, flat, 2 * half + 1)
     assert depth[20] == pytest.approx(2.0 * a * half * (half + 1) / 3.0)
     assert spread[:, 20] == pytest.approx([(a * np.arange(-half, half + 1) ** 2).std()] * 2)
     assert std == pytest.approx(flat, abs=1e-12)
     # The same as it was made with spreads nothing that a scan of few points could miss.
-    by_make = _within([_Arcs.of(0.0 * curve)] * 2, ALIKE, 2.0 * parabola, 2 * half + 1)
+    by_make = _within([in_sections(0.0 * curve)] * 2, ALIKE, 2.0 * parabola, 2 * half + 1)
     assert by_make[0] == pytest.approx(depth)
     assert by_make[2] == pytest.approx(np.zeros((2, n)), abs=1e-12)
     # Cut off at the end of the face; the least is looked for half a window beyond its own.
     assert depth[0] == pytest.approx(2.0 * (parabola[: half + 1].mean() - parabola[half + 2]))
     # The band lies 5 µm above the radius itself.
     above = curve + 0.005 * (np.arange(len(curve)) > 0)[:, None, None]
-    assert _within([_Arcs.of(above), _Arcs.of(curve)], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)
+    assert _within([in_sections(above), in_sections(curve)], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)
+
+
+def test_arcs_by_few_coefficients_are_those_in_all_sections():
+    """Less what flanks have in common, too: surfaces are kept by what is along the face, however many sections lie across it."""
+    rng = np.random.default_rng(4)
+    few, at, shared = rng.normal(size=(6, 40, 9)), rng.uniform(size=(41, 9)), rng.normal(size=(6, 41))
+    by_few = [_Arcs.of(values, at).without(shared) for values in (few, few + 1.0)]
+    in_all = [in_sections(values @ at.T - shared[:, None]) for values in (few, few + 1.0)]
+    for one, other in zip(*(_within(flanks, ALIKE, np.zeros(41), 5) for flanks in (by_few, in_all)), strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-12)
+    assert by_few[0].at_radius.size == 40 * 9
 
 
 def test_the_mean_of_a_section_is_that_of_its_points():
@@ -113,7 +129,7 @@ def test_the_mean_of_a_section_is_that_of_its_points():
     parabola = a * (np.arange(n) - 20.0) ** 2
     curve, number = np.tile(parabola, (1 + len(ACROSS), 8, 1)), np.zeros((2, n))
     number[0, 23], number[1, 20] = 12.0, 12.0
-    depth, _, spread = _within([_Arcs.of(curve)] * 2, number, np.zeros(n), 9)
+    depth, _, spread = _within([in_sections(curve)] * 2, number, np.zeros(n), 9)
     assert depth[20] == pytest.approx(a * 3.0**2, rel=1e-5)
     assert spread[:, 20] == pytest.approx([0.0, 0.0], abs=1e-5)
 
@@ -122,7 +138,7 @@ def test_a_lean_across_the_band_hides_nothing_and_spreads_nothing():
     """Sections have the straight line through their points."""
     curve = np.zeros((1 + len(ACROSS), 8, 41))
     curve[1:] += 0.05 * ACROSS[:, None, None]
-    for values in _within([_Arcs.of(curve), _Arcs.of(0.0 * curve)], ALIKE, np.zeros(41), 5):
+    for values in _within([in_sections(curve), in_sections(0.0 * curve)], ALIKE, np.zeros(41), 5):
         assert values == pytest.approx(np.zeros(values.shape), abs=1e-12)
 
 
