@@ -5,17 +5,16 @@ many teeth are drawn on one sheet). Each function draws on the figure it is give
 """
 
 from gearwear.report.charts.areal import areal_chart
+from gearwear.report.charts.kinds import charts_of
 from gearwear.report.charts.pitch import pitch_chart
 from gearwear.report.charts.topography import topography_chart
-from gearwear.report.charts.traces import helix_chart, profile_chart, rows_of, section_chart, sheets_of
+from gearwear.report.charts.traces import helix_chart, profile_chart
 
 __all__ = [
     "areal_chart",
+    "charts_of",
     "helix_chart",
     "pitch_chart",
     "profile_chart",
-    "rows_of",
-    "section_chart",
-    "sheets_of",
     "topography_chart",
 ]

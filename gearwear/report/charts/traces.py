@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -92,13 +92,6 @@ def rows_of(teeth: Sequence[int]) -> list[list[int]]:
     """
     count = max(1, math.ceil(len(teeth) / PER_ROW))
     return [[int(tooth) for tooth in row] for row in np.array_split(np.asarray(teeth, dtype=np.int64), count)]
-
-
-def sheets_of(draw: Callable[..., Figure], inspection: Inspection) -> list[Figure]:
-    """A trace chart on sheets of paper, a row of teeth on each, all at one magnification."""
-    from matplotlib.figure import Figure
-
-    return [draw(Figure(), inspection, row) for row in rows_of(range(inspection.gear.teeth))]
 
 
 def _trace_chart(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -145,13 +145,7 @@ def _written(column: NDArray[Any], digits: int) -> list[str]:
     if column.dtype == np.float64:
         rounded = (np.round(column, digits) + 0.0).tolist()  # no −0
         return [f"{value:.{digits}f}" if math.isfinite(value) else "" for value in rounded]
-    return [_cell(value, digits) for value in column]
-
-
-def _cell(value: object, digits: int) -> str:
-    if isinstance(value, float):
-        return f"{round(value, digits) + 0.0:.{digits}f}" if math.isfinite(value) else ""
-    return str(value)
+    return [str(value) for value in column]
 
 
 def write_charts(folder: Path, inspection: Inspection, teeth: Sequence[int]) -> list[str]:
@@ -177,44 +171,20 @@ def write_charts(folder: Path, inspection: Inspection, teeth: Sequence[int]) -> 
     return names
 
 
-def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str, Figure, Iterator[Figure]]]:
+def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str, Figure, Iterable[Figure]]]:
     """Every kind of chart: its name, the whole on one sheet, and the same on pages."""
     from matplotlib.figure import Figure
 
-    from gearwear.report.charts import (
-        areal_chart,
-        helix_chart,
-        pitch_chart,
-        profile_chart,
-        rows_of,
-        section_chart,
-        topography_chart,
-    )
+    from gearwear.report.charts import charts_of, topography_chart
 
-    rows = rows_of(range(inspection.gear.teeth))
-    section = not np.isfinite(inspection.helix.slope.value).any()
-    for kind, draw in (("profile", profile_chart), ("helix", helix_chart)):
-        if kind == "profile" or not section:
-            whole = draw(Figure(), inspection)
-            yield kind, whole, iter([whole]) if len(rows) == 1 else (draw(Figure(), inspection, row) for row in rows)
-    laboratory = inspection.laboratory
-    if laboratory is not None:
-        for kind, cut in (("profile_middle", laboratory.sections.profiles[1]), ("helix_middle", laboratory.sections.helices[1])):
-            if np.isfinite(cut.evaluation.slope.value).any():
-                whole = section_chart(Figure(), inspection, section=cut)
-                pages = (
-                    iter([whole]) if len(rows) == 1 else (section_chart(Figure(), inspection, row, section=cut) for row in rows)
-                )
-                yield kind, whole, pages
-        if np.isfinite(laboratory.areal.flanks.twist.value).any():
-            figure = areal_chart(Figure(), inspection, laboratory)
-            yield "surfaces", figure, iter([figure])
-    pitch = pitch_chart(Figure(), inspection)
-    yield "pitch", pitch, iter([pitch])
-    if not section:
+    charts = charts_of(inspection)
+    for kind, chart in charts.items():
+        whole = chart.whole()
+        yield kind, whole, chart.pages() if chart.several else [whole]
+    if "helix" in charts:
         for tooth in teeth:
             figure = topography_chart(Figure(), inspection, tooth)
-            yield "topography", figure, iter([figure])
+            yield "topography", figure, [figure]
 
 
 def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> list[tuple[str, str]]:

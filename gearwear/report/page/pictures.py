@@ -74,6 +74,22 @@ def _wide(teeth: int) -> tuple[Figure, Axes, Axes]:
     return figure, figure.add_axes((0.0, 0.0, 0.93, 1.0)), figure.add_axes((0.95, 0.08, 0.012, 0.8))
 
 
+def _beside(
+    size: tuple[float, float],
+    drawn: Sequence[Callable[[Axes], object]],
+    left: float = 0.07,
+    wspace: float = 0.24,
+    width_ratios: Sequence[float] | None = None,
+) -> Figure:
+    """A figure of so many inches with one axis for each drawing, side by side."""
+    figure = Figure(figsize=size)
+    axes = figure.subplots(1, len(drawn), squeeze=False, width_ratios=width_ratios)[0]
+    figure.subplots_adjust(left=left, right=0.99, wspace=wspace)
+    for axis, draw in zip(axes, drawn, strict=True):
+        draw(axis)
+    return figure
+
+
 def worst_sections(regions: Sequence[WearRegion], arrays: ReportArrays) -> Picture | None:
     """Sections of the worst three teeth, each where its wear is deepest; None without wear."""
     shown = list(dict.fromkeys(region.tooth + 1 for region in regions))[:3]
@@ -169,14 +185,9 @@ def thickness(section: SectionThickness, place: str) -> Picture:
 def meshing_curves(curves: MeshingCurves) -> Picture:
     """Backlash and transmission error over a revolution."""
 
-    def draw() -> Figure:
-        figure = Figure(figsize=(FULL, 2.5))
-        left, right = figure.subplots(1, 2)
-        figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
-        figures.backlash(left, curves)
-        figures.transmission_error(right, curves)
-        return figure
-
+    draw = partial(
+        _beside, (FULL, 2.5), [partial(figures.backlash, curves=curves), partial(figures.transmission_error, curves=curves)]
+    )
     return Picture(
         draw, "curves", "Backlash and transmission error over a revolution of the scanned gear",
         "Backlash grows while a worn flank carries, and the transmission error drops by the depth the mate sinks in. Where a neighbour still"
@@ -206,15 +217,8 @@ def wear_law(law: WearStudy) -> Picture:
     """The mean worn profile with the law fitted to it, and the forecast where there is one."""
     ahead = law.forecast is not None
 
-    def draw() -> Figure:
-        figure = Figure(figsize=(FULL if ahead else 0.62 * FULL, 2.7))
-        left, *right = figure.subplots(1, 1 + ahead, squeeze=False)[0]
-        figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
-        figures.worn_profile(left, law)
-        if ahead:
-            figures.greatest_depth(right[0], law)
-        return figure
-
+    drawn = [partial(figures.worn_profile, law=law), *([partial(figures.greatest_depth, law=law)] if ahead else [])]
+    draw = partial(_beside, (FULL if ahead else 0.62 * FULL, 2.7), drawn)
     caption = (
         f"{'Left: m' if ahead else 'M'}ean depth of the worn flanks along the profile, root to tip, with 95 % of its uncertainty, and the law"
         " fitted to it; below the first point, where contact starts, the depth is the law's. Sliding takes nothing at the pitch point and most"
@@ -244,29 +248,15 @@ def how_it_ran(running: SecondLoop) -> Picture:
 def loaded_pair(study: LoadedStudy) -> list[Picture]:
     """Transmission error under load with its spectrum, and the load over the flank."""
 
-    def error() -> Figure:
-        figure = Figure(figsize=(FULL, 2.6))
-        left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
-        figure.subplots_adjust(left=0.07, right=0.99, wspace=0.22)
-        figures.loaded_transmission_error(left, study)
-        figures.mesh_spectrum(right, study)
-        return figure
-
+    error = [partial(figures.loaded_transmission_error, study=study), partial(figures.mesh_spectrum, study=study)]
     shown = Picture(
-        error, "loaded-error", "Transmission error under load",
+        partial(_beside, (FULL, 2.6), error, wspace=0.22, width_ratios=[1.6, 1.0]), "loaded-error", "Transmission error under load",
         "Below zero the gear lags. Where two pairs share the load it lags less: a perfect pair has a transmission error under load too, and wear"
         " changes it otherwise than it changes the rigid one.",
     )  # fmt: skip
 
-    def load() -> Figure:
-        figure = Figure(figsize=(0.62 * FULL, 2.6))
-        axis = figure.subplots()
-        figure.subplots_adjust(left=0.11, right=0.99)
-        figures.load_map(axis, study)
-        return figure
-
     return [shown, Picture(
-        load, "load-map", "Load over the flank of the pinion",
+        partial(_beside, (0.62 * FULL, 2.6), [partial(figures.load_map, study=study)], left=0.11), "load-map", "Load over the flank of the pinion",
         "Greatest load per width that each place carries, the mean of all teeth. A load that leans along z is misalignment or uneven wear; at"
         " the ends of the path tip corners carry.",
     )]  # fmt: skip
@@ -275,59 +265,38 @@ def loaded_pair(study: LoadedStudy) -> list[Picture]:
 def across_face(across: AcrossFace) -> Picture:
     """How evenly the flanks are worn across the face."""
 
-    def draw() -> Figure:
-        figure = Figure(figsize=(0.62 * FULL, 2.2))
-        axis = figure.subplots()
-        figure.subplots_adjust(left=0.11, right=0.99)
-        figures.across_face(axis, across)
-        return figure
-
+    draw = partial(_beside, (0.62 * FULL, 2.2), [partial(figures.across_face, across=across)], left=0.11)
     caption = (
         "Mean depth of the worn flanks across the face, each row the mean over the flank's height, with 95 % of its uncertainty."
     )
     return Picture(draw, "across-face", "Wear across the face", caption)
 
 
+LINES = "As a stylus takes it, from the points beside the line."
+CHARTS = {
+    "profile": ("Profile", "A trace per tooth about its own mean line, tip up, more material to the right; the table under each trace is in µm."),
+    "helix": ("Helix", "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share."),
+    "pitch": ("Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2)."),
+    "profile_middle": ("Profile, along a line", LINES),
+    "helix_middle": ("Helix, along a line", LINES),
+    "surfaces": (
+        "Surfaces", "Mean flanks, slopes and twist of each, waves round the gear, and the tight centre distance with a master gear."
+    ),
+}  # fmt: skip
+"""Names and captions of an inspection's charts in the order of the page."""
+
+
 def inspection_charts(inspection: Inspection, half: str = "") -> list[Picture]:
     """Charts of the evaluated traces as a measuring machine prints them, and where lines and surfaces were asked for, those; `half` of a double
     helical gear tells their names from those of the other one."""
-    from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, rows_of, section_chart, sheets_of
+    from gearwear.report.charts import charts_of
 
-    planar = not np.isfinite(inspection.helix.slope.value).any()
-    many = len(rows_of(range(inspection.gear.teeth))) > 1
-    ident = half and f"-{half}"
-    charts: list[Picture] = []
-
-    def add(draw: Callable[..., Figure], name: str, words: str, in_rows: bool = True) -> None:
-        sheets = partial(sheets_of, draw, inspection) if in_rows and many else None
-        charts.append(
-            Picture(lambda: draw(Figure(), inspection), f"chart{len(charts)}{ident}", f"{name} chart", words, False, sheets)
-        )
-
-    add(
-        profile_chart,
-        "Profile",
-        "A trace per tooth about its own mean line, tip up, more material to the right; the table under each trace is in µm.",
-    )
-    if not planar:
-        add(
-            helix_chart,
-            "Helix",
-            "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share.",
-        )
-    add(pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2).", in_rows=False)
-    examined = inspection.laboratory
-    if examined is not None:
-        for cut, name in zip((examined.sections.profiles[1], examined.sections.helices[1]), ("Profile", "Helix"), strict=True):
-            if np.isfinite(cut.evaluation.slope.value).any():
-                words = "As a stylus takes it, from the points beside the line."
-                add(partial(section_chart, section=cut), f"{name}, along a line", words)
-        if np.isfinite(examined.areal.flanks.twist.value).any():
-            words = (
-                "Mean flanks, slopes and twist of each, waves round the gear, and the tight centre distance with a master gear."
-            )
-            add(partial(areal_chart, examined=examined), "Surfaces", words, in_rows=False)
-    return charts
+    charts, ident = charts_of(inspection), half and f"-{half}"
+    told = [(charts[kind], name, words) for kind, (name, words) in CHARTS.items() if kind in charts]
+    return [
+        Picture(chart.whole, f"chart{i}{ident}", f"{name} chart", words, False, chart.sheets if chart.several else None)
+        for i, (chart, name, words) in enumerate(told)
+    ]
 
 
 def gear_charts(arrays: ReportArrays, quantity: str, values: Floats) -> Picture:
