@@ -294,16 +294,7 @@ def collect(
         n = min(BLOCK, len(points) - start)
         read(points[start : start + BLOCK] if n == BLOCK else filled_up(points[start:]), b)
         move(rotation, translation, b)
-        fillets = place(c, b, which)
-        normals_of(c, b)
-        below_tips(c, s, b)
-        for turn in range(1 if s.own_grid else 0, 2):  # the limits' cells, and then those of the pass
-            grid = limits if turn == 0 else g
-            columns_on_fillets(grid, b, which, fillets)
-            in_rows(grid, b)
-            in_cells(c, grid, b)
-            if turn == 0:
-                b[LIMIT : LIMIT + BLOCK] = b[CELL : CELL + BLOCK]
+        in_own_cells(c, g, limits, s, b, which)
         for i in range(n):
             k, d = int(b[CELL + i]), b[DEVIATION + i]
             if k < 0:
@@ -336,26 +327,46 @@ def collect(
                 positions_[cut, 0], positions_[cut, 1], positions_[cut, 2] = px, py, pz
                 normals_[cut, 0], normals_[cut, 1], normals_[cut, 2] = nx, ny, nz
                 cut += 1
-            row = rows[k]
-            count, total, highest = row[COUNT] + 1.0, row[DEVIATIONS] + d, row[HIGHEST]
-            if count > 1.0:
-                off = count * d - total
-                row[SQUARES] += off * off / (count * (count - 1.0))
-                highest = max(highest, d)
-            else:
-                highest = d
-            row[COUNT], row[DEVIATIONS], row[HIGHEST] = count, total, highest
-            row[ROLLS] += roll
-            row[FEET] += px
-            row[FEET + 1] += py
-            row[FEET + 2] += pz
-            row[NORMALS] += nx
-            row[NORMALS + 1] += ny
-            row[NORMALS + 2] += nz
-            row[LEVERS] += py * nz - pz * ny
-            row[LEVERS + 1] += pz * nx - px * nz
-            row[LEVERS + 2] += px * ny - py * nx
+            add_to(rows[k], d, roll, px, py, pz, nx, ny, nz)
     return other, far, cut
+
+
+@step
+def in_own_cells(c, g, limits, s, b, which):
+    """Locate a block of moved points, and put them in the cells of the pass and, where those are others, of its limits."""
+    fillets = place(c, b, which)
+    normals_of(c, b)
+    below_tips(c, s, b)
+    for turn in range(1 if s.own_grid else 0, 2):  # the limits' cells, and then those of the pass
+        grid = limits if turn == 0 else g
+        columns_on_fillets(grid, b, which, fillets)
+        in_rows(grid, b)
+        in_cells(c, grid, b)
+        if turn == 0:
+            b[LIMIT : LIMIT + BLOCK] = b[CELL : CELL + BLOCK]
+
+
+@formula
+def add_to(row, d, roll, px, py, pz, nx, ny, nz):
+    """A point with its foot and normal to what its cell holds: as `CellSums.add`, the squares about the running mean."""
+    count, total, highest = row[COUNT] + 1.0, row[DEVIATIONS] + d, row[HIGHEST]
+    if count > 1.0:
+        off = count * d - total
+        row[SQUARES] += off * off / (count * (count - 1.0))
+        highest = max(highest, d)
+    else:
+        highest = d
+    row[COUNT], row[DEVIATIONS], row[HIGHEST] = count, total, highest
+    row[ROLLS] += roll
+    row[FEET] += px
+    row[FEET + 1] += py
+    row[FEET + 2] += pz
+    row[NORMALS] += nx
+    row[NORMALS + 1] += ny
+    row[NORMALS + 2] += nz
+    row[LEVERS] += py * nz - pz * ny
+    row[LEVERS + 1] += pz * nx - px * nz
+    row[LEVERS + 2] += px * ny - py * nx
 
 
 @step
