@@ -94,6 +94,14 @@ def bundled_example() -> Iterator[Path]:
         yield folder
 
 
+def design_alone(arguments: Namespace) -> Design:
+    """The design that was named, or that of the bundled example."""
+    from gearwear.design.files.toml import read_design
+
+    with bundled_example() as example:
+        return read_design(arguments.design or example / "design.toml")
+
+
 @contextmanager
 def design_and_scans(arguments: Namespace) -> Iterator[tuple[Path, list[Path]]]:
     """The design file and the scans that were named, or the bundled example.

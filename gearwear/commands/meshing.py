@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
-from gearwear.commands.inputs import add_memory_argument, add_output_arguments, bundled_example
+from gearwear.commands.inputs import add_memory_argument, add_output_arguments, design_alone
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
@@ -79,11 +79,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> None:
-    from gearwear.design.files.toml import read_design
     from gearwear.report.files.writing import check_folder
 
-    with bundled_example() as example:
-        design = read_design(arguments.design or example / "design.toml")
+    design = design_alone(arguments)
     _check(arguments)
     check_folder(arguments.out)
     from gearwear.api import write

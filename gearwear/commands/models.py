@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
-from gearwear.commands.inputs import bundled_example
-from gearwear.design import Design, Gear, read_design
+from gearwear.commands.inputs import design_alone
+from gearwear.design import Design, Gear
 from gearwear.errors import InputError
 from gearwear.report.files.writing import check_folder, output_folder
 
@@ -42,8 +42,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> None:
-    with bundled_example() as example:
-        design = read_design(arguments.design or example / "design.toml")
+    design = design_alone(arguments)
     for path, description in write_models(design, arguments.out, arguments.rexs):
         sys.stdout.write(f"{path}  {path.stat().st_size / 1000:,.0f} kB  {description}\n")
     for warning in design.warnings:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from gearwear.design.quantity import as_given, at_most
 from gearwear.errors import InputError
@@ -44,13 +44,8 @@ class Limits:
 
     def by_quantity(self) -> dict[str, float]:
         """The limits that are set, by the key of the design file, which is the quantity's name with its unit."""
-        keys = {
-            "wear_depth_mm": self.wear_depth,
-            "wear_volume_mm3": self.wear_volume,
-            "thickness_loss_mm": self.thickness_loss,
-            "backlash_mm": self.backlash,
-        }
-        return {key: value for key, value in keys.items() if value is not None}
+        values = (getattr(self, field.name) for field in fields(self))
+        return {key: value for key, value in zip(LIMIT_KEYS, values, strict=True) if value is not None}
 
     def check(self, pitch: float) -> None:
         """Refuse lengths that no gear of this pitch, mm, can reach: they are of another unit, and everything would keep them.

@@ -276,7 +276,6 @@ class FlankState:
     now: Floats
     now_std: Floats
     law: Floats
-    law_std: Floats
     least: Floats
     most: Floats
     least_std: Floats
@@ -312,7 +311,6 @@ class FlankState:
             now=state @ fit.depth,
             now_std=now_std,
             law=law,
-            law_std=law_std,
             least=least[0],
             most=most[0],
             least_std=least[1],

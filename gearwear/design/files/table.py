@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from gearwear.design.files.values import RATIOS
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS
 from gearwear.design.spec import check_module
@@ -43,7 +44,6 @@ LENGTHS = (
     "backlash_allowance", "normal_module", "transverse_module", "rim_diameter", "fillet_radius", "protuberance",
     "grinding_stock", "tip_rounding", "end_rounding", "gap", *(key for key in MODIFICATION_KEYS if key not in WORDS),
 )  # fmt: skip
-RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 ANGLES = ("pressure_angle", "helix_angle", "protuberance_angle")
 COUNTS = ("teeth", "cutter_teeth")
 PAIR = ("centre_distance", "backlash_allowance", "baseline")

@@ -8,7 +8,7 @@ import math
 import re
 import tomllib
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from gearwear.design.files.sections import (
 from gearwear.design.files.table import parse_table
 from gearwear.design.files.values import (
     MEASURED,
+    RATIOS,
     THINNING_FROM,
     check_keys,
     exclusive,
@@ -61,7 +62,6 @@ LENGTHS = (
     "protuberance",
     "grinding_stock",
 )
-RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 GEAR_KEYS = (
     "teeth",
     *MODULES,
@@ -80,7 +80,7 @@ GEAR_KEYS = (
     "left",
     "right",
 )
-TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift", "flank_class")
+TOLERANCE_KEYS = tuple(field.name for field in fields(GearTolerance))
 MOST_BYTES = 1_000_000
 """Bytes of a file that describes a gear."""
 LONG_KEY = re.compile(

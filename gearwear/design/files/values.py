@@ -13,6 +13,8 @@ from gearwear.errors import InputError
 
 MOST_LISTED = 20
 """Keys of a gear that the message on an unknown one lists."""
+RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
+"""Keys of a gear that are multiples of its module."""
 MEASURED = "measured"
 THINNING_FROM = ("drawing", MEASURED)
 """Where a thinning comes from: the drawing, or a gear that was measured and may be worn."""
