@@ -19,6 +19,7 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.loop import Loop, close_loop
 from gearwear.diagnose.pooled import carried, left_out, loop_grid, rough_grid
+from gearwear.diagnose.space_waves import SpaceWave
 from gearwear.placing.cells import CellGrid, Cells, bin_points, cells_of, noise
 from gearwear.placing.sums import CellSums
 from gearwear.scan.reading import read_scan
@@ -91,13 +92,13 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
         sure = first.worn_sides if first.sides_sure else worn
         pitch = first.context.pitch if first.sides_sure else measured.context.pitch
         known = replace(measured, context=measured.context.with_pitch(pitch))
-        scan = replace(scan, measured=known, worn=sure, ruled_out=first.sides_ruled_out)
+        scan = replace(scan, measured=known, worn=sure, ruled_out=first.sides_ruled_out, in_space=first.in_space)
     far = look is not None and is_far(*look)
     likeliest = look[0] if look is not None and far else scan.explained(look)
     again = None
     if far or is_far(likeliest, scan.cells):
         scan, again = scan.located_again(likeliest)
-        likeliest = scan.explained()
+        likeliest = replace(scan, in_space=likeliest.in_space).explained()
     return replace(scan.closed(likeliest, again), undecided=tuple(scan.moved(other, again) for other in likeliest.others))
 
 
@@ -123,6 +124,8 @@ class _Scan:
         Sides that are known to be worn throughout.
     ruled_out : frozenset of frozenset of Side
         What the loop on few cells told not to be so (`Loop.sides_ruled_out`).
+    in_space : tuple of SpaceWave or None
+        Waves in space that a first look found; None: they are looked for.
     """
 
     measured: MeasuredGear
@@ -132,6 +135,7 @@ class _Scan:
     begun: Loop | None = None
     worn: frozenset[Side] | None = None
     ruled_out: frozenset[frozenset[Side]] = frozenset()
+    in_space: tuple[SpaceWave, ...] | None = None
 
     @property
     def grid(self) -> CellGrid:
@@ -173,6 +177,7 @@ class _Scan:
             begun=self.begun,
             ruled_out=self.ruled_out,
             look=first,
+            in_space=self.in_space,
         )
 
     def located_again(self, loop: Loop) -> tuple[_Scan, Relocation]:

@@ -60,7 +60,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
     """
     by_tooth, by_block = folds(fit.cells)
     # A view out of scale is a scale and waves of the lowest orders; more waves round the gear belong to no part of it.
-    pieces = [pattern.field for pattern in known if pattern.order <= ORDERS_OF_A_PART]
+    pieces = [pattern.field for pattern in known if pattern.order is not None and pattern.order <= ORDERS_OF_A_PART]
     whole = replace(fit, target=fit.target + np.sum(pieces, axis=0)) if pieces else fit
     pieces_of: tuple[Pattern, ...] | None = None
     while True:
@@ -151,6 +151,6 @@ def _makeshift(
         field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
         for pattern in patterns:
             small = not kept[i] and evidence[i].contribution < rules().makeshift * pattern.rms
-            if small and order_share(fit.cells.grid, field, pattern.order) > rules().own_order:
+            if small and pattern.order is not None and order_share(fit.cells.grid, field, pattern.order) > rules().own_order:
                 suspects.append(i)
     return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None

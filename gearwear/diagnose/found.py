@@ -29,6 +29,7 @@ from gearwear.diagnose.parameter import ParameterEstimate, Role
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
+from gearwear.diagnose.space_waves import SpaceWave
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -238,6 +239,11 @@ class Loop(Card):
         return sum(effect.lowers_by(flanks, self.context) for effect in self.effects if effect.kind is Kind.MANUFACTURE)
 
     @property
+    def in_space(self) -> tuple[SpaceWave, ...]:
+        """The patterns that are waves in space."""
+        return tuple(pattern.in_space for pattern in self.patterns if pattern.in_space is not None)
+
+    @property
     def unexplained_rms(self) -> float:
         """RMS of the patterns together, mm; 0 without any."""
         return math.sqrt(sum(pattern.rms**2 for pattern in self.patterns))
@@ -406,7 +412,7 @@ def _or_views(names: tuple[str, ...], fit: Fit, context: Context, candidate: Can
 
 def form_of_all(patterns: tuple[Pattern, ...], cells: int) -> Floats:
     """What patterns have in common on all teeth, (cells,) mm."""
-    forms = [pattern.field for pattern in patterns if pattern.order == 0]
+    forms = [pattern.field for pattern in patterns if pattern.of_all_teeth]
     return np.asarray(np.sum([np.zeros(cells), *forms], axis=0), dtype=np.float64)
 
 

@@ -7,6 +7,7 @@ is decided first, on all cells (`worn_sides`); then the scan is explained withou
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -28,10 +29,12 @@ from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
 from gearwear.diagnose.masks import not_stray, sound_cells, whole_flanks, worn_mask
 from gearwear.diagnose.of_the_part import left_in_the_part, of_the_form, or_of_the_form
+from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
+from gearwear.diagnose.space_waves import SpaceWave, find_space_waves
 from gearwear.diagnose.told_by_wear import told_by_wear
 from gearwear.diagnose.untold import with_untold
 from gearwear.diagnose.worn_flanks import worn_flanks
@@ -82,6 +85,7 @@ def close_loop(
     begun: Loop | None = None,
     ruled_out: frozenset[frozenset[Side]] = frozenset(),
     look: bool = False,
+    in_space: tuple[SpaceWave, ...] | None = None,
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -107,12 +111,43 @@ def close_loop(
         Sides that a first look showed not to be worn throughout together (`Loop.sides_ruled_out`).
     look : bool
         Whether this is a first look.
+    in_space : tuple of SpaceWave or None
+        Waves in space that are known; None: they are looked for in what the effects leave, and where there are some, the effects once more without them.
 
     Returns
     -------
     Loop
         Of the cheapest hypothesis; `others` are those that cost no more than chance beyond it.
     """
+    closed = partial(_closed, cells, noise, context, effects, root_free, worn, out, begun, ruled_out, look)
+    known = _of_waves(in_space or (), cells)
+    loop = closed(known)
+    if in_space is None:
+        known = _of_waves(find_space_waves(cells.with_deviation(loop.residual_after), noise), cells)
+        loop = closed(known) if known else loop
+    for _ in range(rules().most_patterns):
+        # What goes round the gear drowns which sides are worn, and what is left out tooth by tooth: once more without it.
+        waves = tuple(pattern for pattern in loop.patterns if not pattern.of_all_teeth)
+        if len(waves) == len(known):
+            break
+        known, loop = waves, closed(waves)
+    return loop
+
+
+def _closed(
+    cells: Cells,
+    noise: float,
+    context: Context,
+    effects: tuple[Effect, ...] | None,
+    root_free: bool,
+    worn: frozenset[Side] | None,
+    out: Bools | None,
+    begun: Loop | None,
+    ruled_out: frozenset[frozenset[Side]],
+    look: bool,
+    waves: tuple[Pattern, ...],
+) -> Loop:
+    """`close_loop` beside patterns that are known."""
     every = tuple(effect for effect in catalogue() if effect.searched) if effects is None else effects
     made = tuple(effect for effect in every if effect.kind is not Kind.WEAR)
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
@@ -131,7 +166,7 @@ def close_loop(
     def searched_without(sides: frozenset[Side]) -> Searched:
         without = replace(context, worn=sides, pitch=costs.pitch.get(sides, context.pitch))
         dictionary = with_worn(every_candidate, cells, without) if sides else every_candidate
-        return _first_search(cells, noise, without, dictionary, always, out, apart, begun)
+        return _first_search(cells, noise, without, dictionary, always, out, apart, begun, waves)
 
     costs, ran = SideCosts({alone: 0.0}), context.ran
     plain = searched_without(alone)
@@ -147,7 +182,7 @@ def close_loop(
         costs = side_costs(others_alone, plain.problem, plain.model, noise, ruled_out, look).beside(ran)
 
     def explained(sides: frozenset[Side]) -> Loop:
-        loop = _explained(plain if sides == alone else searched_without(sides), noise, always)
+        loop = _explained(plain if sides == alone else searched_without(sides), noise, always, waves)
         return with_untold(replace(loop, worn_flanks=low if apart.any() else None), cells)
 
     taken = explained(costs.chosen)
@@ -230,9 +265,10 @@ def _first_search(
     out: Bools | None,
     apart: Bools,
     begun: Loop | None,
+    waves: tuple[Pattern, ...],
 ) -> Searched:
-    """The search from nothing; the flanks of sides worn throughout are left out, and those `apart`."""
-    target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
+    """The search from nothing, in what is left beside `waves`; the flanks of sides worn throughout are left out, and those `apart`."""
+    target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0) - _sum(waves, len(cells.count))
     sound = sound_cells(cells, context.worn, context.fillets_told, context.faces) & ~rounded_ends(cells, noise) & ~apart
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
@@ -241,19 +277,19 @@ def _first_search(
     return Searched(sound, *_search(fit, first.pose_residual(), noise, context, always, out, begun))
 
 
-def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop:
-    """What of a search may be named."""
+def _of_waves(waves: tuple[SpaceWave, ...], cells: Cells) -> tuple[Pattern, ...]:
+    return tuple(Pattern.of_wave(cells, wave) for wave in waves)
+
+
+def _sum(patterns: tuple[Pattern, ...], cells: int) -> Floats:
+    """Of their fields, (cells,) mm."""
+    return np.asarray(sum((pattern.field for pattern in patterns), np.zeros(cells)), dtype=np.float64)
+
+
+def _explained(searched: Searched, noise: float, always: frozenset[str], waves: tuple[Pattern, ...]) -> Loop:
+    """What of a search may be named, beside patterns that are known and not in its target."""
     fit, problem, model, context = searched.fit, searched.problem, searched.model, searched.problem.context
-    target = fit.target
-    stood = eliminate(fit, problem, model, noise)
-    waves = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
-    if waves:
-        # A wave round the gear drowns what is left out tooth by tooth: once more without it.
-        field = np.sum([pattern.field for pattern in waves], axis=0)
-        fit = replace(fit, target=np.where(fit.cells.seen, target - field, 0.0), use=searched.sound)
-        fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
-        stood = eliminate(fit, problem, model, noise, waves)
-        fit = replace(fit, target=target)
+    stood = eliminate(fit, problem, model, noise, waves)
     # Where a form of all teeth is left that is larger than the noise, it decides between effects that are nearly alike, and not they themselves.
     form = any(pattern.is_form(noise) for pattern in stood.patterns)
     kept = left_in_the_part(problem, stood.model, form)
@@ -263,17 +299,17 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
         instead = or_of_the_form(fit, problem, kept) if context.worn else {}
     kept = told_by_wear(fit, problem, kept)
     if kept != stood.model:
-        known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
-        stood = eliminate(fit, problem, kept, noise, known)
+        stood = eliminate(fit, problem, kept, noise, waves)
     if not context.fillets_told:
         fit = _with_fillets(fit, sound_cells(fit.cells, context.worn, faces=context.faces))
         problem = fit.problem(problem.unit, context, always)
-    loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
+    whole = replace(fit, target=fit.target + _sum(waves, len(fit.target)))
+    loop = account(whole, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
     unsized = {effect.name for effect in loop.effects if not effect.is_sized} - always
     if unsized:  # with all that its ± holds it may be nothing: no cause
-        known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
-        stood = eliminate(fit, problem, tuple(c for c in stood.model if c.name not in unsized), noise, known)
-        loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
+        still = tuple(c for c in stood.model if c.name not in unsized)
+        stood = eliminate(fit, problem, still, noise, waves)
+        loop = account(whole, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
     loop = replace(loop, effects=tuple(effect.or_one_of(instead.get(effect.name, ())) for effect in loop.effects))
     # What all teeth share is known from the others, and no texture under the wear of one of them.
     return replace(loop, covariance=estimate_covariance(fit.cells, loop.left, loop.use, noise)) if loop.patterns else loop

@@ -8,7 +8,7 @@ frequency plane (along z × along the profile) against the power of all orders t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import ndimage
@@ -18,7 +18,8 @@ from scipy.special import fdtrc
 from gearwear.arrays import Bools, Floats
 from gearwear.design.surface import BORE, FILLET, FLANK, ROOT, TIP
 from gearwear.diagnose.rules import rules
-from gearwear.placing.cells import CellGrid
+from gearwear.diagnose.space_waves import SpaceWave
+from gearwear.placing.cells import CellGrid, Cells
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +28,8 @@ class Pattern:
 
     Parameters
     ----------
-    order : int
-        Waves round the gear (0: the same on every tooth).
+    order : int or None
+        Waves round the gear (0: the same on every tooth); None of a wave that stands in space.
     sides : str
         "alike", "opposite", "left only", "right only" or "mixed": how left and right flanks go together.
     waves_z, waves_profile : float
@@ -41,9 +42,11 @@ class Pattern:
         Corrected for all orders and frequencies looked at.
     field : (m,) float
         Its deviation in every cell, mm.
+    in_space : SpaceWave or None
+        The wave that it is, where it stands in space.
     """
 
-    order: int
+    order: int | None
     sides: str
     waves_z: float
     waves_profile: float
@@ -51,9 +54,10 @@ class Pattern:
     peak: float
     p_value: float
     field: Floats
+    in_space: SpaceWave | None = None
 
     @classmethod
-    def of(cls, grid: CellGrid, field: Floats, order: int, p_value: float) -> Pattern:
+    def of(cls, grid: CellGrid, field: Floats, order: int | None, p_value: float) -> Pattern:
         """A field (m,) mm of some order, described."""
         own = grid.sides(field)
         flanks = own[..., grid.fillet :]  # fillets are alike where one side of flanks was left out
@@ -61,12 +65,30 @@ class Pattern:
         parity = _parity(flanks if flanks.any() else own)
         return cls(order, parity, _waves(own, axis=2), _waves(own, axis=3), rms, peak, p_value, field)
 
+    @classmethod
+    def of_wave(cls, cells: Cells, wave: SpaceWave) -> Pattern:
+        """A wave that stands in space."""
+        field = np.where(cells.seen, wave.deviation(cells.points), 0.0)
+        return replace(cls.of(cells.grid, field, None, wave.p_value), in_space=wave)
+
+    @property
+    def of_all_teeth(self) -> bool:
+        """Whether it is the same on every tooth."""
+        return self.order == 0
+
+    @property
+    def known_everywhere(self) -> bool:
+        """Whether it is known where a flank is worn, from other teeth: not what goes round the gear, drawn on from beside the wear."""
+        return self.of_all_teeth or self.in_space is not None
+
     def is_form(self, noise: float) -> bool:
         """Whether it is a form that all teeth have, larger than the scatter of points."""
-        return self.order == 0 and self.rms > noise
+        return self.of_all_teeth and self.rms > noise
 
     def describe(self, face_width: float) -> str:
         """A sentence an engineer can use."""
+        if self.in_space is not None:
+            return f"{self.in_space.describe()}, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"
         round_ = "the same on every tooth" if self.order == 0 else f"{self.order} waves round the gear"
         along = f"wavelength {face_width / self.waves_z:.1f} mm along z" if self.waves_z >= 0.5 else "even along z"
         profile = f"{self.waves_profile:.1f} waves along the profile" if self.waves_profile >= 0.5 else "even along the profile"
@@ -95,7 +117,7 @@ def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) ->
     value = np.where(use, residual, np.nan)
     found: list[Pattern] = []
     for _ in range(rules().most_patterns):
-        pattern = _strongest(grid, value, noise, {p.order for p in found})
+        pattern = _strongest(grid, value, noise, {p.order for p in found if p.order is not None})
         if pattern is None:
             break
         found.append(pattern)
@@ -104,8 +126,9 @@ def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) ->
 
 
 def joined(grid: CellGrid, patterns: tuple[Pattern, ...]) -> tuple[Pattern, ...]:
-    """Those of one order as one: what was found in two steps is one structure."""
-    together = []
+    """Those of one order as one: what was found in two steps is one structure. Each wave in space by itself, and first."""
+    together = [pattern for pattern in patterns if pattern.order is None]
+    patterns = tuple(pattern for pattern in patterns if pattern.order is not None)
     for order in dict.fromkeys(pattern.order for pattern in patterns):
         same = [pattern for pattern in patterns if pattern.order == order]
         field = np.sum([pattern.field for pattern in same], axis=0)

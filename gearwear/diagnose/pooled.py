@@ -15,6 +15,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.found import Loop
 from gearwear.diagnose.masks import sound_cells
+from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.untold import with_untold
 from gearwear.placing.cells import CellGrid, Cells
 
@@ -113,7 +114,12 @@ def carried(loop: Loop, pooled: Cells, cells: Cells, noise: float) -> Loop:
         use=use,
         residual_before=before,
         residual_after=after,
-        patterns=tuple(replace(pattern, field=on_cells(pattern.field)) for pattern in loop.patterns),
+        patterns=tuple(
+            replace(pattern, field=on_cells(pattern.field))
+            if pattern.in_space is None
+            else Pattern.of_wave(cells, pattern.in_space)
+            for pattern in loop.patterns
+        ),
         hidden=None if loop.hidden is None else on_cells(loop.hidden),
         made=None if loop.made is None else on_cells(loop.made),
         others=tuple(carried(other, pooled, cells, noise) for other in loop.others),

@@ -340,8 +340,8 @@ class _Errors:
 
 def unexplained_covariance(loop: Loop | None, weights: Floats | SideWeights) -> Floats:
     """Covariance, mm⁶, by patterns round the gear that have no name: drawn on under the wear of a flank from those beside it, they may be off by
-    their own size there. A pattern that all teeth share is known from the other teeth."""
-    rms = 0.0 if loop is None else math.sqrt(sum(pattern.rms**2 for pattern in loop.patterns if pattern.order > 0))
+    their own size there. A pattern that all teeth share is known from the other teeth, and a wave in space from all of them."""
+    rms = 0.0 if loop is None else math.sqrt(sum(pattern.rms**2 for pattern in loop.patterns if not pattern.known_everywhere))
     result = np.zeros((len(weights), len(weights)))
     for _, which, values in by_side(weights) if rms > 0.0 else ():
         offset = rms * values.sum(axis=(1, 2))

@@ -164,7 +164,7 @@ def _patterns(closed: Loop) -> list[Block]:
         return []
     rows = [
         (
-            str(pattern.order), pattern.sides, significant(pattern.waves_z), significant(pattern.waves_profile), significant(1e3 * pattern.rms),
+            "in space" if pattern.order is None else str(pattern.order), pattern.sides, significant(pattern.waves_z), significant(pattern.waves_profile), significant(1e3 * pattern.rms),
             significant(1e3 * pattern.peak), significant(pattern.p_value, 2),
         )
         for pattern in closed.patterns

@@ -17,7 +17,7 @@ from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.gear import Gear
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
-from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.diagnose.found import FoundEffect
 from gearwear.inspection.halves import Half
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.published import PublishedMeshing
@@ -30,9 +30,10 @@ from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.numbers import Json, parameters_record, value_std, value_std_unit
 from gearwear.report.records.running import running_record
 from gearwear.report.records.teeth import mark_record, pattern_values, same_teeth_record
+from gearwear.report.records.unexplained import unexplained_record
 from gearwear.report.records.views import view_record
 from gearwear.report.records.wear_law import wear_law_record
-from gearwear.report.words.verdict import noise, pattern_words, weighed_words
+from gearwear.report.words.verdict import noise, weighed_words
 from gearwear.wear.regions import Wear, WearRegion
 
 SCHEMA = "gearwear.report/1"
@@ -263,7 +264,7 @@ def _loop(results: Results) -> Json:
             {"effects": list(pair.effects), "parameters": list(pair.parameters), "correlation": pair.value}
             for pair in loop.correlations
         ],
-        "unexplained": _unexplained(loop, results),
+        "unexplained": unexplained_record(loop, results),
         "changes": change_records(results.changes),
         "candidates_tried": loop.tried,
         **running_record(results.pair),
@@ -309,24 +310,6 @@ def effect_record(effect: FoundEffect) -> Json:
             "contribution_rms_um": 1e3 * evidence.contribution,
         },
     }
-
-
-def _unexplained(loop: Loop, results: Results) -> Json:
-    if not loop.patterns:
-        return {"found": False, "rms_um": 0.0, "pattern": None}
-    return {
-        "found": True,
-        "rms_um": 1e3 * loop.unexplained_rms,
-        "pattern": pattern_words(loop, results.gear),
-        "patterns": [
-            {
-                "order": p.order, "sides": p.sides, "waves_across_face": p.waves_z, "waves_along_profile": p.waves_profile,
-                "rms_um": 1e3 * p.rms, "peak_um": 1e3 * p.peak, "p_value": p.p_value,
-            }
-            for p in loop.patterns
-        ],
-        "treatment": "taken out as an empirical pattern, without a name, before wear is measured",
-    }  # fmt: skip
 
 
 def _wear(results: Results) -> Json:

@@ -1,0 +1,276 @@
+"""Waves that stand in space: fringes of a projector, a ripple of the measuring volume.
+
+A scanner knows nothing of teeth. Its wave carries points by d(P) = a cos 2π k·P + b sin 2π k·P, a deviation n · d. On the flanks such a wave is another
+one on every tooth, so that neither what teeth share nor waves round the gear show it; over all the gear it is one line of the spectrum in space. What is
+the gear's own differs from tooth to tooth by chance, or is alike in the teeth's own axes, and is spread over all directions there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy import fft, ndimage
+from scipy.optimize import minimize
+from scipy.special import chdtrc, chdtri
+
+from gearwear.arrays import Floats, Ints
+from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, ROOT, SurfacePoints
+from gearwear.diagnose.masks import folds
+from gearwear.diagnose.rules import rules
+from gearwear.placing.cells import CellGrid, Cells
+
+CELLS_PER_WAVE = 4.0
+"""Cells in the shortest wave that is looked for: the mean of a cell holds 0.9 of it."""
+WAVES_PER_RADIUS = 20.0
+"""Shortest wave that is looked for, in the radius of the gear, whatever the cells: bounds the spectrum."""
+CLOSER = {"xatol": 1e-5, "fatol": 1e-2, "maxfev": 80}
+"""Of the search for the vector of a wave; numerical."""
+VOXELS_PER_WAVE = 3.0
+"""Voxels in the shortest wave; numerical."""
+SWEEPS = 3
+"""Of means of flanks and of places on a flank, taken off in turn; numerical."""
+SEEN = 1e-3
+"""Share of the normals along a direction below which displacements along it are not seen; numerical."""
+SHELL = 4
+"""Lines of the spectrum that a shell is thick; numerical."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpaceWave:
+    """One wave, in the design's axes.
+
+    Parameters
+    ----------
+    vector : (3,) float
+        Waves per mm along x, y and z.
+    cosine, sine : (3,) float
+        Displacement of points at phase 0 and at a quarter, mm.
+    p_value : float
+        Corrected for all waves that were looked at.
+    """
+
+    vector: Floats
+    cosine: Floats
+    sine: Floats
+    p_value: float
+
+    @property
+    def wavelength(self) -> float:
+        """mm."""
+        return 1.0 / float(np.linalg.norm(self.vector))
+
+    @property
+    def direction(self) -> Floats:
+        """Unit vector (3,) along which it goes."""
+        return self.vector * self.wavelength
+
+    @property
+    def amplitude(self) -> float:
+        """Greatest displacement, mm."""
+        return float(np.linalg.norm(np.column_stack([self.cosine, self.sine]), ord=2))
+
+    def describe(self) -> str:
+        """Words an engineer can use."""
+        along = ", ".join(f"{one:.2f}" for one in self.direction)
+        return f"a wave that stands in space, {self.wavelength:.1f} mm long along ({along}), {1e3 * self.amplitude:.1f} µm high, as fringes of a scanner do"
+
+    def deviation(self, points: SurfacePoints) -> Floats:
+        """Of points (n,), mm, + outward."""
+        phase = 2.0 * math.pi * (points.position @ self.vector)
+        carried = np.cos(phase)[:, None] * self.cosine + np.sin(phase)[:, None] * self.sine
+        return np.asarray(np.einsum("ij,ij->i", points.normal, carried), dtype=np.float64)
+
+
+def find_space_waves(cells: Cells, noise: float) -> tuple[SpaceWave, ...]:
+    """Waves in space, the strongest first.
+
+    Parameters
+    ----------
+    cells : Cells
+        A registered scan, binned; neither pose nor effects need be known.
+    noise : float
+        Scatter of points, mm.
+
+    Returns
+    -------
+    tuple of SpaceWave
+        Each lowers the error of teeth that it was not made from; at most as many as patterns are reported.
+    """
+    grid = cells.grid
+    if grid.rows < rules().pattern_rows or grid.gear.teeth < rules().pattern_teeth or not cells.seen.any():
+        return ()
+    found = list[SpaceWave]()
+    sheet = _Sheet.of(cells, noise)
+    for _ in range(rules().most_patterns):
+        one = _strongest(sheet, noise)
+        if one is None:
+            break
+        found.append(one)
+        sheet = sheet.without(one)
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class _Sheet:
+    """The cells that are seen, their weights, and which of them share a flank or a place on it."""
+
+    grid: CellGrid
+    points: SurfacePoints
+    value: Floats
+    weight: Floats
+    flank: Ints
+    place: Ints
+    fold: Ints
+
+    @classmethod
+    def of(cls, cells: Cells, noise: float) -> _Sheet:
+        seen = np.flatnonzero(cells.seen & np.isin(cells.points.surface, (FLANK, FILLET, ROOT, END_LOW, END_HIGH)))
+        flank, place = _labels(cells.grid)
+        texture = (rules().first_correlation * noise) ** 2
+        weight = 1.0 / (noise**2 / np.maximum(cells.count[seen], 1.0) + texture)
+        points = cells.points.take(seen)
+        whole = cls(cells.grid, points, points.deviation, weight, flank[seen], place[seen], folds(cells)[0][seen])
+        for _ in range(2):  # wear, chips and strays are no wave: what stands far off is left out
+            left = whole.filtered(whole.value[:, None])[:, 0]
+            scale = 1.4826 * float(np.median(np.abs(left[whole.weight > 0.0])))
+            whole = replace(whole, weight=np.where(np.abs(left) < rules().errors * scale, weight, 0.0))
+        return whole
+
+    def without(self, wave: SpaceWave) -> _Sheet:
+        """The rest, once a wave is known."""
+        return replace(self, value=self.value - wave.deviation(self.points))
+
+    @cached_property
+    def smooth(self) -> Floats:
+        """Orthonormal columns of every displacement that is of second order in space, weighted: pose, scales, bows, a bent axis."""
+        at = self.points.position / self.grid.gear.tip_radius
+        powers = np.column_stack([np.ones(len(at)), at, *(at[:, [i]] * at[:, [j]] for i in range(3) for j in range(i, 3))])
+        columns = (self.points.normal[:, :, None] * powers[:, None, :]).reshape(len(at), -1)
+        basis, size, _ = np.linalg.svd(np.sqrt(self.weight)[:, None] * columns, full_matrices=False)
+        return np.asarray(basis[:, size > 1e-6 * size[0]], dtype=np.float64)
+
+    def filtered(self, values: Floats) -> Floats:
+        """Values (n, k) without what is smooth in space, the mean of every flank and that of every place on a flank."""
+        root = np.sqrt(self.weight)[:, None]
+        for _ in range(SWEEPS):
+            own = root * values
+            smooth = self.smooth @ (self.smooth.T @ own)
+            values = values - np.divide(smooth, root, out=np.zeros_like(smooth), where=root > 0.0)
+            for label in (self.place, self.flank):
+                values = values - _means(values, self.weight, label)
+        return values
+
+    @cached_property
+    def left(self) -> Floats:
+        """(n,) mm."""
+        return self.filtered(self.value[:, None])[:, 0]
+
+    @cached_property
+    def squares(self) -> Floats:
+        """(3, 3) weighted sum of n nᵀ, of which either phase of a wave has half."""
+        return np.asarray((self.points.normal * self.weight[:, None]).T @ self.points.normal, dtype=np.float64)
+
+    def gain(self, vector: Floats) -> float:
+        """Fall of the weighted square by the wave of a vector, beside all that is taken off."""
+        through = self.filtered(_columns(self.points, vector))
+        return float(_solved(through, self.left, self.weight) @ (through.T @ (self.weight * self.left)))
+
+    def gain_about(self, vector: Floats) -> float:
+        """The same, as though all that is taken off had nothing in common with the wave."""
+        turned = np.exp(-2j * math.pi * (self.points.position @ vector)) * (self.weight * self.left)
+        moment = turned @ self.points.normal
+        return 2.0 * float(np.real(np.conj(moment) @ np.linalg.pinv(self.squares, rcond=SEEN) @ moment))
+
+
+def _labels(grid: CellGrid) -> tuple[Ints, Ints]:
+    """Which flank (or part of another surface) each cell is of, and which place on it, (m,): those of one place lie alike on all teeth."""
+    flank, place = np.zeros(grid.count, np.int64), np.zeros(grid.count, np.int64)
+    last = 0
+    for surface, (start, size) in grid.blocks.items():
+        at, per_tooth = np.arange(size), size // grid.gear.teeth
+        parts = 2 if surface in (FLANK, FILLET) else 1
+        flank[start : start + size] = last + at // (per_tooth // parts)
+        place[start : start + size] = start + at % per_tooth
+        last += parts * grid.gear.teeth
+    return flank, place
+
+
+def _means(values: Floats, weight: Floats, label: Ints) -> Floats:
+    """Weighted means of values (n, k) that share a label (n,), at each."""
+    total = np.maximum(np.bincount(label, weight), 1e-300)
+    means = np.column_stack([np.bincount(label, weight * column, minlength=len(total)) for column in values.T]) / total[:, None]
+    return np.asarray(means[label], dtype=np.float64)
+
+
+def _strongest(sheet: _Sheet, noise: float) -> SpaceWave | None:
+    vector, p_value = _line(sheet)
+    if p_value > rules().significance:
+        return None
+    vector = minimize(lambda k: -sheet.gain_about(k), vector, method="Nelder-Mead", options=CLOSER).x
+    gain, error = _gain_on_left_out_teeth(sheet, sheet.filtered(_columns(sheet.points, vector)))
+    if gain <= rules().errors * error:
+        return None
+    vector = minimize(lambda k: -sheet.gain(k), vector, method="Nelder-Mead", options=CLOSER).x
+    through = sheet.filtered(_columns(sheet.points, vector))
+    cosine, sine = np.split(_solved(through, sheet.left, sheet.weight), 2)
+    wave = SpaceWave(vector, cosine, sine, p_value)
+    flank = sheet.points.surface == FLANK
+    size = float(np.sqrt(np.mean(wave.deviation(sheet.points)[flank] ** 2)))
+    return wave if size > rules().least_share * noise else None
+
+
+def _columns(points: SurfacePoints, vector: Floats) -> Floats:
+    """Deviation (n, 6) of points by unit displacements along x, y and z, at phase 0 and at a quarter."""
+    phase = 2.0 * math.pi * (points.position @ vector)
+    return np.hstack([np.cos(phase)[:, None] * points.normal, np.sin(phase)[:, None] * points.normal])
+
+
+def _solved(columns: Floats, value: Floats, weight: Floats) -> Floats:
+    own = columns * weight[:, None]
+    return np.asarray(np.linalg.lstsq(own.T @ columns, own.T @ value, rcond=SEEN)[0], dtype=np.float64)
+
+
+def _gain_on_left_out_teeth(sheet: _Sheet, columns: Floats) -> tuple[float, float]:
+    """Fall of the weighted square, per cell, of teeth that the wave was not made from, and its standard error over the folds."""
+    gains = []
+    for fold in np.unique(sheet.fold[sheet.weight > 0.0]):
+        out = sheet.fold == fold
+        amplitudes = _solved(columns[~out], sheet.left[~out], sheet.weight[~out])
+        before, after = sheet.left[out], sheet.left[out] - columns[out] @ amplitudes
+        gains.append(float((sheet.weight[out] * (before**2 - after**2)).sum() / max(sheet.weight[out].sum(), 1e-300)))
+    return float(np.mean(gains)), max(float(np.std(gains, ddof=1)) / math.sqrt(len(gains)), 1e-300)
+
+
+def _line(sheet: _Sheet) -> tuple[Floats, float]:
+    """The strongest line of the spectrum in space, waves per mm (3,), in what the lines beside it have; and its p-value."""
+    points, grid = sheet.points, sheet.grid
+    radius = grid.gear.tip_radius
+    shortest = max(CELLS_PER_WAVE * grid.size, radius / WAVES_PER_RADIUS)
+    voxel = shortest / VOXELS_PER_WAVE
+    at = np.rint((points.position - points.position.min(axis=0)) / voxel).astype(np.int64)
+    shape = [fft.next_fast_len(2 * int(extent)) for extent in at.max(axis=0) + 1]
+    flat = np.ravel_multi_index(at.T, shape)
+    carried = (sheet.weight * sheet.left)[:, None] * points.normal
+    size = math.prod(shape)
+    sums = [np.bincount(flat, column, size).reshape(shape) for column in carried.T]
+    waves = [np.fft.fftfreq(n, voxel) for n in shape]
+    step = [1.0 / (n * voxel) for n in shape]
+    across = np.hypot(waves[0][:, None], waves[1][None, :])
+    length = np.sqrt(across[:, :, None] ** 2 + waves[2] ** 2)
+    looked = (length >= 1.0 / radius) & (length <= 1.0 / shortest) & (waves[0][:, None, None] >= 0.0)
+    which = np.nonzero(looked)
+    plane = fft.fftn(sums[0] + 1j * sums[1])
+    mirrored = np.conj(plane[tuple(-one for one in which)])
+    moment = np.stack([(plane[which] + mirrored) / 2.0, (plane[which] - mirrored) / 2.0j, fft.fftn(sums[2])[which]])
+    power = 2.0 * np.real((np.conj(moment) * (np.linalg.pinv(sheet.squares, rcond=SEEN) @ moment)).sum(axis=0))
+    rings, floors = np.rint(across[which[:2]] / (SHELL * step[0])), np.rint(np.abs(waves[2][which[2]]) / (SHELL * step[2]))
+    shell = np.unique(rings * (floors.max() + 1.0) + floors, return_inverse=True)[1]
+    typical = ndimage.median(power, shell, np.arange(shell.max() + 1))[shell]
+    freedoms = 2.0 * np.linalg.matrix_rank(sheet.squares, tol=SEEN * float(np.trace(sheet.squares)))
+    ratio = power / np.maximum(typical, 1e-300) * chdtri(freedoms, 0.5)
+    best = int(np.argmax(ratio))
+    p_value = min(1.0, len(power) * float(chdtrc(freedoms, float(ratio[best]))))
+    return np.array([own[at[best]] for own, at in zip(waves, which, strict=True)]), p_value

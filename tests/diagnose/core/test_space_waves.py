@@ -1,0 +1,97 @@
+"""Waves that points were carried by in space, asked back; and what is the gear's own, or chance, where there is none."""
+
+import numpy as np
+import pytest
+
+from gearwear.api import as_scan
+from gearwear.comparison.closing import find_effects
+from gearwear.comparison.measured_gear import register
+from gearwear.design.pair import Design
+from gearwear.design.side import Side
+from gearwear.design.surface import FLANK, locate
+from gearwear.diagnose.space_waves import SpaceWave, find_space_waves
+from gearwear.placing.cells import CellGrid, bin_points
+from tests.placing.placing import designed
+from tests.synthetic import Recipe, make_scan
+from tests.synthetic.removal import SlidingWear
+from tests.synthetic.texture import Texture
+
+NOISE = 0.006
+QUIET = Recipe(noise_um=1e3 * NOISE, jitter=1.0, pose="none").of_size(60_000)
+ALONG = np.array([0.6, -0.64, 0.48])
+"""A unit vector."""
+
+
+def cells_of(points):
+    gear = designed()
+    return bin_points(locate(points, gear), CellGrid.for_scan(gear, len(points)))
+
+
+def carried(points, wavelength, height, way, along=ALONG):
+    """Points carried along `way` by a wave that goes along another: of the instrument, it knows of no gear."""
+    return points + height * np.cos(2.0 * np.pi * points @ along / wavelength + 0.7)[:, None] * np.asarray(way)
+
+
+@pytest.mark.parametrize(("wavelength", "height"), [(14.0, 0.006), (8.0, 0.004), (5.0, 0.004)])
+def test_a_wave_comes_back(wavelength, height):
+    way = np.array([0.8, 0.6, 0.0])
+    (found,) = find_space_waves(cells_of(carried(make_scan(QUIET, 3).points, wavelength, height, way)), NOISE)
+    sign = np.sign(found.vector @ ALONG)
+    assert found.vector * sign == pytest.approx(ALONG / wavelength, abs=0.001)
+    assert found.wavelength == pytest.approx(wavelength, rel=0.02)
+    assert found.amplitude == pytest.approx(height, rel=0.1)
+    assert found.cosine[:2] == pytest.approx(height * np.cos(0.7) * way[:2], abs=0.15 * height)
+    assert sign * found.sine[:2] == pytest.approx(-height * np.sin(0.7) * way[:2], abs=0.15 * height)
+    assert found.p_value < 1e-6
+
+
+def test_what_it_does_to_a_point_is_its_displacement_along_the_normal():
+    cells = cells_of(make_scan(QUIET, 3).points)
+    points = cells.points.take(cells.seen)
+    wave = SpaceWave(ALONG / 7.0, np.array([0.003, 0.0, 0.001]), np.array([0.0, -0.002, 0.0]), 0.0)
+    phase = 2.0 * np.pi * points.position @ ALONG / 7.0
+    moved = np.cos(phase)[:, None] * [0.003, 0.0, 0.001] + np.sin(phase)[:, None] * [0.0, -0.002, 0.0]
+    assert wave.deviation(points) == pytest.approx((moved * points.normal).sum(axis=1), abs=1e-15)
+    assert wave.wavelength == pytest.approx(7.0) and wave.direction == pytest.approx(ALONG)
+    assert wave.amplitude == pytest.approx(np.hypot(0.003, 0.001))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_and_texture_are_no_wave(seed):
+    recipe = Recipe(noise_um=1e3 * NOISE, jitter=1.0, pose="none", texture=Texture(3.0, 1.5)).of_size(30_000)
+    assert find_space_waves(cells_of(make_scan(recipe, seed).points), NOISE) == ()
+
+
+def test_what_is_the_gears_own_is_no_wave():
+    """Places of teeth, forms of all teeth, slopes that go round, a pose that is off, an ellipse: none of them stands in space."""
+    cells, rng = cells_of(make_scan(QUIET, 4).points), np.random.default_rng(4)
+    points = cells.points
+    flank, angle = points.surface == FLANK, 2.0 * np.pi * points.tooth / 12
+    depth = np.nan_to_num((points.roll - np.nanmin(points.roll[flank])) / np.ptp(points.roll[flank]))
+    own = np.where(flank, points.side * (0.02 * rng.normal(size=12)[points.tooth] + 0.01 * np.cos(angle)), 0.0)
+    own += np.where(
+        flank, 0.006 * np.cos(6.0 * np.pi * depth) + 0.008 * np.cos(2.0 * angle) * (points.position[:, 2] / 15.0 - 0.5), 0.0
+    )
+    x, y, _ = points.position.T
+    own += points.normal @ [0.05, -0.03, 0.01] + 4e-4 * (x * points.normal[:, 0] - y * points.normal[:, 1])
+    assert find_space_waves(cells.with_deviation(points.deviation + own), NOISE) == ()
+
+
+def test_a_wear_of_one_tooth_is_no_wave():
+    cells = cells_of(make_scan(QUIET, 5).points)
+    points = cells.points
+    near = np.linalg.norm(points.position - points.position[np.flatnonzero(points.surface == FLANK)[200]], axis=1)
+    worn = np.where(points.surface == FLANK, -0.08 * np.exp(-((near / 3.0) ** 2)), 0.0)
+    assert find_space_waves(cells.with_deviation(points.deviation + worn), NOISE) == ()
+
+
+def test_wear_is_measured_beside_fringes_that_have_no_name():
+    """Fringes as high as the noise are told, as unexplained; no effect is made of them, and which side is worn is not lost."""
+    recipe = Recipe(noise_um=8.0, jitter=1.0, pose="none", wear=(SlidingWear(50.0, side=-1),)).of_size(25_000)
+    fringed = carried(make_scan(recipe, 8).points, 9.0, 0.008, [0.8, 0.6, 0.0])
+    loop = find_effects(register(Design({"gear": designed()}), as_scan(fringed))).loop
+    (wave,) = loop.in_space
+    assert wave.wavelength == pytest.approx(9.0, rel=0.02) and wave.amplitude == pytest.approx(0.008, rel=0.1)
+    assert loop.worn_sides == frozenset({Side.RIGHT}) and loop.effects == ()
+    (pattern,) = loop.patterns
+    assert pattern.order is None and pattern.known_everywhere and "stands in space" in pattern.describe(15.0)
