@@ -32,7 +32,7 @@ def _in_space(wave: SpaceWave | None) -> Json:
     if wave is None:
         return {}
     return {
-        "length_mm": wave.wavelength,
+        "wave_mm": wave.wavelength,
         "direction": wave.direction.tolist(),
-        "height_um": 1e3 * wave.amplitude,
+        "displacement_um": 1e3 * wave.amplitude,
     }
