@@ -52,6 +52,12 @@ MUTATIONS = [
         ("inspection/radial.py", "0.01 * math.sqrt(d) + 0.8", "0.01 * math.sqrt(d) + 0.08", "inspection/test_radial.py"),
         ("inspection/radial.py", "1.0, 1.5, 2.5, 4.0", "1.0, 1.5, 2.0, 4.0", "inspection/test_radial.py"),
         ("brep/ends.py", "END_TOLERANCE = 2e-8", "END_TOLERANCE = 2e-3", "brep/test_ends.py"),
+        # waves that stand in space
+        ("diagnose/space_waves.py", "gain <= rules().errors * error", "False", "diagnose/core/test_space_waves.py"),
+        ("diagnose/space_waves.py", "if p_value > rules().significance", "if False", "diagnose/core/test_space_waves.py"),
+        ("diagnose/space_waves.py", "smooth = self.smooth @ (self.smooth.T @ own)", "smooth = 0.0 * own", "diagnose/core/test_space_waves.py"),
+        ("diagnose/space_waves.py", "for label in (self.place, self.flank):", "for label in (self.flank,):", "diagnose/core/test_space_waves.py"),
+        ("diagnose/loop.py", "known, loop = waves, closed(waves)", "break", "diagnose/core/test_space_waves.py"),
         # limits as messages give them
         ("design/pair.py", "CENTRE_ROUNDING = 0.5e-3", "CENTRE_ROUNDING = 0.5e-5", "design/test_limits_in_messages.py"),
         ("design/pair.py", "CENTRE_ROUNDING = 0.5e-3", "CENTRE_ROUNDING = 0.6e-3", "design/test_limits_in_messages.py"),

@@ -85,6 +85,16 @@ def test_a_wear_of_one_tooth_is_no_wave():
     assert find_space_waves(cells.with_deviation(points.deviation + worn), NOISE) == ()
 
 
+def test_a_bowed_axis_does_not_hide_which_side_is_worn():
+    """It goes round the gear once, and has no name: taken out only after sides were decided, it hid the worn one."""
+    recipe = Recipe(noise_um=8.0, jitter=1.0, pose="none", wear=(SlidingWear(40.0, side=-1),)).of_size(25_000)
+    points = make_scan(recipe, 6).points
+    points[:, 0] += 0.02 * (4.0 * (points[:, 2] / 15.0 - 0.5) ** 2 - 1.0 / 3.0)
+    loop = find_effects(register(Design({"gear": designed()}), as_scan(points))).loop
+    assert loop.worn_sides == frozenset({Side.RIGHT}) and loop.effects == ()
+    assert [pattern.order for pattern in loop.patterns] == [1]
+
+
 def test_wear_is_measured_beside_fringes_that_have_no_name():
     """Fringes as high as the noise are told, as unexplained; no effect is made of them, and which side is worn is not lost."""
     recipe = Recipe(noise_um=8.0, jitter=1.0, pose="none", wear=(SlidingWear(50.0, side=-1),)).of_size(25_000)
