@@ -14,11 +14,10 @@ from functools import cached_property
 import numpy as np
 from scipy import fft, ndimage
 from scipy.optimize import minimize
-from scipy.special import chdtrc, chdtri
+from scipy.special import stdtr
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, ROOT, SurfacePoints
-from gearwear.diagnose.masks import folds
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import CellGrid, Cells
 
@@ -49,7 +48,7 @@ class SpaceWave:
     cosine, sine : (3,) float
         Displacement of points at phase 0 and at a quarter, mm.
     p_value : float
-        Corrected for all waves that were looked at.
+        Of what one half of the teeth tells the other of it, the less sure of both ways.
     """
 
     vector: Floats
@@ -97,7 +96,7 @@ def find_space_waves(cells: Cells, noise: float) -> tuple[SpaceWave, ...]:
     Returns
     -------
     tuple of SpaceWave
-        Each lowers the error of teeth that it was not made from; at most as many as patterns are reported.
+        Each was found in either half of the teeth and lowers the error of the other; at most as many as patterns are reported.
     """
     grid = cells.grid
     if grid.rows < rules().pattern_rows or grid.gear.teeth < rules().pattern_teeth or not cells.seen.any():
@@ -123,7 +122,6 @@ class _Sheet:
     weight: Floats
     flank: Ints
     place: Ints
-    fold: Ints
 
     @classmethod
     def of(cls, cells: Cells, noise: float) -> _Sheet:
@@ -132,7 +130,7 @@ class _Sheet:
         texture = (rules().first_correlation * noise) ** 2
         weight = 1.0 / (noise**2 / np.maximum(cells.count[seen], 1.0) + texture)
         points = cells.points.take(seen)
-        whole = cls(cells.grid, points, points.deviation, weight, flank[seen], place[seen], folds(cells)[0][seen])
+        whole = cls(cells.grid, points, points.deviation, weight, flank[seen], place[seen])
         for _ in range(2):  # wear, chips and strays are no wave: what stands far off is left out
             left = whole.filtered(whole.value[:, None])[:, 0]
             scale = 1.4826 * float(np.median(np.abs(left[whole.weight > 0.0])))
@@ -173,6 +171,18 @@ class _Sheet:
         """(3, 3) weighted sum of n nᵀ, of which either phase of a wave has half."""
         return np.asarray((self.points.normal * self.weight[:, None]).T @ self.points.normal, dtype=np.float64)
 
+    def every_other(self, start: int) -> _Sheet:
+        """Every other tooth alone."""
+        return replace(self, weight=np.where(self.points.tooth % 2 == start, self.weight, 0.0))
+
+    def near(self, vector: Floats) -> Floats:
+        """The vector of most `gain_about`, from one close by."""
+        return np.asarray(minimize(lambda k: -self.gain_about(k), vector, method="Nelder-Mead", options=CLOSER).x)
+
+    def closest(self, vector: Floats) -> Floats:
+        """The vector of most `gain`, from one close by."""
+        return np.asarray(minimize(lambda k: -self.gain(k), vector, method="Nelder-Mead", options=CLOSER).x)
+
     def gain(self, vector: Floats) -> float:
         """Fall of the weighted square by the wave of a vector, beside all that is taken off."""
         through = self.filtered(_columns(self.points, vector))
@@ -206,17 +216,16 @@ def _means(values: Floats, weight: Floats, label: Ints) -> Floats:
 
 
 def _strongest(sheet: _Sheet, noise: float) -> SpaceWave | None:
-    vector, p_value = _line(sheet)
-    if p_value > rules().significance:
+    """The strongest wave; None where one half of the teeth does not tell the other of it, each of a wave it found by itself."""
+    halves = [sheet.every_other(start) for start in range(2)]
+    lines = [half.near(_line(half)) for half in halves]
+    told = [_told(half, other, line) for half, other, line in zip(halves, reversed(halves), lines, strict=True)]
+    if min(one.gain - rules().errors * one.error for one in told) <= 0.0:
         return None
-    vector = minimize(lambda k: -sheet.gain_about(k), vector, method="Nelder-Mead", options=CLOSER).x
-    gain, error = _gain_on_left_out_teeth(sheet, sheet.filtered(_columns(sheet.points, vector)))
-    if gain <= rules().errors * error:
-        return None
-    vector = minimize(lambda k: -sheet.gain(k), vector, method="Nelder-Mead", options=CLOSER).x
+    vector = sheet.closest(lines[int(np.argmax([sheet.gain(line) for line in lines]))])
     through = sheet.filtered(_columns(sheet.points, vector))
     cosine, sine = np.split(_solved(through, sheet.left, sheet.weight), 2)
-    wave = SpaceWave(vector, cosine, sine, p_value)
+    wave = SpaceWave(vector, cosine, sine, max(one.p_value for one in told))
     flank = sheet.points.surface == FLANK
     size = float(np.sqrt(np.mean(wave.deviation(sheet.points)[flank] ** 2)))
     return wave if size > rules().least_share * noise else None
@@ -233,19 +242,28 @@ def _solved(columns: Floats, value: Floats, weight: Floats) -> Floats:
     return np.asarray(np.linalg.lstsq(own.T @ columns, own.T @ value, rcond=SEEN)[0], dtype=np.float64)
 
 
-def _gain_on_left_out_teeth(sheet: _Sheet, columns: Floats) -> tuple[float, float]:
-    """Fall of the weighted square, per cell, of teeth that the wave was not made from, and its standard error over the folds."""
-    gains = []
-    for fold in np.unique(sheet.fold[sheet.weight > 0.0]):
-        out = sheet.fold == fold
-        amplitudes = _solved(columns[~out], sheet.left[~out], sheet.weight[~out])
-        before, after = sheet.left[out], sheet.left[out] - columns[out] @ amplitudes
-        gains.append(float((sheet.weight[out] * (before**2 - after**2)).sum() / max(sheet.weight[out].sum(), 1e-300)))
-    return float(np.mean(gains)), max(float(np.std(gains, ddof=1)) / math.sqrt(len(gains)), 1e-300)
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """What a wave of some teeth explains on others: the fall of their weighted square, a cell, the mean of the teeth and its standard error."""
+
+    gain: float
+    error: float
+    p_value: float
 
 
-def _line(sheet: _Sheet) -> tuple[Floats, float]:
-    """The strongest line of the spectrum in space, waves per mm (3,), in what the lines beside it have; and its p-value."""
+def _told(half: _Sheet, other: _Sheet, vector: Floats) -> _Told:
+    columns = _columns(half.points, vector)
+    through = other.filtered(columns) @ _solved(half.filtered(columns), half.left, half.weight)
+    fall = other.weight * (other.left**2 - (other.left - through) ** 2)
+    tooth = other.points.tooth
+    cells = np.bincount(tooth, other.weight)
+    gains = np.bincount(tooth, fall)[cells > 0.0] / cells[cells > 0.0]
+    error = max(float(np.std(gains, ddof=1)) / math.sqrt(len(gains)), 1e-300)
+    return _Told(float(gains.mean()), error, float(stdtr(len(gains) - 1.0, -gains.mean() / error)))
+
+
+def _line(sheet: _Sheet) -> Floats:
+    """The line of the spectrum in space that stands out most of those of its length, waves per mm (3,)."""
     points, grid = sheet.points, sheet.grid
     radius = grid.gear.tip_radius
     shortest = max(CELLS_PER_WAVE * grid.size, radius / WAVES_PER_RADIUS)
@@ -269,8 +287,5 @@ def _line(sheet: _Sheet) -> tuple[Floats, float]:
     rings, floors = np.rint(across[which[:2]] / (SHELL * step[0])), np.rint(np.abs(waves[2][which[2]]) / (SHELL * step[2]))
     shell = np.unique(rings * (floors.max() + 1.0) + floors, return_inverse=True)[1]
     typical = ndimage.median(power, shell, np.arange(shell.max() + 1))[shell]
-    freedoms = 2.0 * np.linalg.matrix_rank(sheet.squares, tol=SEEN * float(np.trace(sheet.squares)))
-    ratio = power / np.maximum(typical, 1e-300) * chdtri(freedoms, 0.5)
-    best = int(np.argmax(ratio))
-    p_value = min(1.0, len(power) * float(chdtrc(freedoms, float(ratio[best]))))
-    return np.array([own[at[best]] for own, at in zip(waves, which, strict=True)]), p_value
+    best = int(np.argmax(power / np.maximum(typical, 1e-300)))
+    return np.array([own[at[best]] for own, at in zip(waves, which, strict=True)])
