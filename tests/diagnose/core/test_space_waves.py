@@ -12,7 +12,7 @@ from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.space_waves import SpaceWave, find_space_waves
 from gearwear.placing.cells import CellGrid, bin_points
 from tests.placing.placing import designed
-from tests.synthetic import Recipe, make_scan
+from tests.synthetic import Effect, Recipe, make_scan
 from tests.synthetic.removal import SlidingWear
 from tests.synthetic.texture import Texture
 
@@ -73,7 +73,8 @@ def test_what_is_the_gears_own_is_no_wave():
         flank, 0.006 * np.cos(6.0 * np.pi * depth) + 0.008 * np.cos(2.0 * angle) * (points.position[:, 2] / 15.0 - 0.5), 0.0
     )
     x, y, _ = points.position.T
-    own += points.normal @ [0.05, -0.03, 0.01] + 4e-4 * (x * points.normal[:, 0] - y * points.normal[:, 1])
+    own += points.normal @ [0.05, -0.03, 0.01] + 4e-3 * (x * points.normal[:, 0] - y * points.normal[:, 1])
+    own += points.normal[:, 0] * 0.2 * (points.position[:, 2] / 15.0 - 0.5) ** 2
     assert find_space_waves(cells.with_deviation(points.deviation + own), NOISE) == ()
 
 
@@ -85,13 +86,16 @@ def test_a_wear_of_one_tooth_is_no_wave():
     assert find_space_waves(cells.with_deviation(points.deviation + worn), NOISE) == ()
 
 
-def test_a_bowed_axis_does_not_hide_which_side_is_worn():
-    """It goes round the gear once, and has no name: taken out only after sides were decided, it hid the worn one."""
-    recipe = Recipe(noise_um=8.0, jitter=1.0, pose="none", wear=(SlidingWear(40.0, side=-1),)).of_size(25_000)
+def test_a_bowed_axis_does_not_hide_the_rest():
+    """It goes round the gear once, and has no name: before it is taken out no pitch errors show beside it."""
+    index = np.cumsum(np.random.default_rng(6).normal(0.0, 3.0, 12))
+    index -= np.linspace(0.0, index[-1], 12)
+    pitch = Effect("pitch", {"index_um": tuple(index - index.mean())})
+    recipe = Recipe(noise_um=8.0, jitter=1.0, pose="none", effects=(pitch,), wear=(SlidingWear(40.0, side=-1),)).of_size(25_000)
     points = make_scan(recipe, 6).points
     points[:, 0] += 0.02 * (4.0 * (points[:, 2] / 15.0 - 0.5) ** 2 - 1.0 / 3.0)
     loop = find_effects(register(Design({"gear": designed()}), as_scan(points))).loop
-    assert loop.worn_sides == frozenset({Side.RIGHT}) and loop.effects == ()
+    assert loop.worn_sides == frozenset({Side.RIGHT}) and [effect.name for effect in loop.effects] == ["pitch"]
     assert [pattern.order for pattern in loop.patterns] == [1]
 
 
