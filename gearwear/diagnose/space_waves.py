@@ -141,22 +141,9 @@ class _Sheet:
         """The rest, once a wave is known."""
         return replace(self, value=self.value - wave.deviation(self.points))
 
-    @cached_property
-    def smooth(self) -> Floats:
-        """Orthonormal columns of every displacement that is of second order in space, weighted: pose, scales, bows, a bent axis."""
-        at = self.points.position / self.grid.gear.tip_radius
-        powers = np.column_stack([np.ones(len(at)), at, *(at[:, [i]] * at[:, [j]] for i in range(3) for j in range(i, 3))])
-        columns = (self.points.normal[:, :, None] * powers[:, None, :]).reshape(len(at), -1)
-        basis, size, _ = np.linalg.svd(np.sqrt(self.weight)[:, None] * columns, full_matrices=False)
-        return np.asarray(basis[:, size > 1e-6 * size[0]], dtype=np.float64)
-
     def filtered(self, values: Floats) -> Floats:
-        """Values (n, k) without what is smooth in space, the mean of every flank and that of every place on a flank."""
-        root = np.sqrt(self.weight)[:, None]
+        """Values (n, k) without the mean of every flank and that of every place on a flank."""
         for _ in range(SWEEPS):
-            own = root * values
-            smooth = self.smooth @ (self.smooth.T @ own)
-            values = values - np.divide(smooth, root, out=np.zeros_like(smooth), where=root > 0.0)
             for label in (self.place, self.flank):
                 values = values - _means(values, self.weight, label)
         return values
