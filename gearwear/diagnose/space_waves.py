@@ -74,7 +74,7 @@ class SpaceWave:
     def describe(self) -> str:
         """Words an engineer can use."""
         along = ", ".join(f"{one:.2f}" for one in self.direction)
-        return f"a wave that stands in space, {self.wavelength:.1f} mm long along ({along}), {1e3 * self.amplitude:.1f} µm high, as fringes of a scanner do"
+        return f"a wave that stands in space, {self.wavelength:.1f} mm long along ({along}), {1e3 * self.amplitude:.1f} µm high"
 
     def deviation(self, points: SurfacePoints) -> Floats:
         """Of points (n,), mm, + outward."""

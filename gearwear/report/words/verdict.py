@@ -287,6 +287,8 @@ def unexplained_words(loop: Loop, gear: Gear, where: bool = True) -> str:
     """What no effect of the catalogue explains, and where it is."""
     if loop.patterns:
         text = f"unexplained: a pattern of {_um(loop.unexplained_rms)}{SPACE}µm RMS that no known effect describes"
+        if loop.in_space:
+            text += f", {'in part ' if len(loop.in_space) < len(loop.patterns) else ''}a wave that stands in space as fringes of a scanner do"
         return f"{text} ({pattern_words(loop, gear)})" if where else text
     if loop.rms_after > ABOVE_NOISE * loop.noise > 0.0:
         much = f"{_um(loop.rms_after)}{SPACE}µm RMS against the scan's own noise of {_um(loop.noise)}{SPACE}µm"
