@@ -126,9 +126,9 @@ def close_loop(
         known = _of_waves(find_space_waves(cells.with_deviation(loop.residual_after), noise), cells)
         loop = closed(known) if known else loop
     for _ in range(rules().most_patterns):
-        # What goes round the gear drowns which sides are worn, and what is left out tooth by tooth: once more without it.
-        waves = tuple(pattern for pattern in loop.patterns if not pattern.of_all_teeth)
-        if len(waves) == len(known):
+        # What goes round the gear drowns which sides are worn: once more without it. Not where a form of all teeth larger than the noise decides that.
+        waves = _unlike(loop.patterns)
+        if len(waves) == len(known) or any(pattern.is_form(noise) for pattern in loop.patterns):
             break
         known, loop = waves, closed(waves)
     return loop
@@ -286,10 +286,24 @@ def _sum(patterns: tuple[Pattern, ...], cells: int) -> Floats:
     return np.asarray(sum((pattern.field for pattern in patterns), np.zeros(cells)), dtype=np.float64)
 
 
-def _explained(searched: Searched, noise: float, always: frozenset[str], waves: tuple[Pattern, ...]) -> Loop:
+def _unlike(patterns: tuple[Pattern, ...]) -> tuple[Pattern, ...]:
+    """Those that are another on every tooth."""
+    return tuple(pattern for pattern in patterns if not pattern.of_all_teeth)
+
+
+def _explained(searched: Searched, noise: float, always: frozenset[str], known: tuple[Pattern, ...]) -> Loop:
     """What of a search may be named, beside patterns that are known and not in its target."""
     fit, problem, model, context = searched.fit, searched.problem, searched.model, searched.problem.context
-    stood = eliminate(fit, problem, model, noise, waves)
+    target = fit.target
+    stood = eliminate(fit, problem, model, noise, known)
+    waves = _unlike(stood.patterns)
+    if len(waves) > len(known):
+        # A wave round the gear drowns what is left out tooth by tooth: once more without it.
+        new = _sum(waves, len(target)) - _sum(known, len(target))
+        fit = replace(fit, target=np.where(fit.cells.seen, target - new, 0.0), use=searched.sound)
+        fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
+        stood = eliminate(fit, problem, model, noise, waves)
+        fit = replace(fit, target=target)
     # Where a form of all teeth is left that is larger than the noise, it decides between effects that are nearly alike, and not they themselves.
     form = any(pattern.is_form(noise) for pattern in stood.patterns)
     kept = left_in_the_part(problem, stood.model, form)
@@ -299,16 +313,16 @@ def _explained(searched: Searched, noise: float, always: frozenset[str], waves: 
         instead = or_of_the_form(fit, problem, kept) if context.worn else {}
     kept = told_by_wear(fit, problem, kept)
     if kept != stood.model:
-        stood = eliminate(fit, problem, kept, noise, waves)
+        stood = eliminate(fit, problem, kept, noise, _unlike(stood.patterns))
     if not context.fillets_told:
         fit = _with_fillets(fit, sound_cells(fit.cells, context.worn, faces=context.faces))
         problem = fit.problem(problem.unit, context, always)
-    whole = replace(fit, target=fit.target + _sum(waves, len(fit.target)))
+    whole = replace(fit, target=fit.target + _sum(known, len(target)))
     loop = account(whole, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
     unsized = {effect.name for effect in loop.effects if not effect.is_sized} - always
     if unsized:  # with all that its ± holds it may be nothing: no cause
         still = tuple(c for c in stood.model if c.name not in unsized)
-        stood = eliminate(fit, problem, still, noise, waves)
+        stood = eliminate(fit, problem, still, noise, _unlike(stood.patterns))
         loop = account(whole, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
     loop = replace(loop, effects=tuple(effect.or_one_of(instead.get(effect.name, ())) for effect in loop.effects))
     # What all teeth share is known from the others, and no texture under the wear of one of them.
