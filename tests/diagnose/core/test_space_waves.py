@@ -1,14 +1,19 @@
 """Waves that points were carried by in space, asked back; and what is the gear's own, or chance, where there is none."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+import gearwear.diagnose.loop as loop_module
 from gearwear.api import as_scan
 from gearwear.comparison.closing import find_effects
 from gearwear.comparison.measured_gear import register
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
+from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.space_waves import SpaceWave, find_space_waves
 from gearwear.placing.cells import CellGrid, bin_points
 from tests.placing.placing import designed
@@ -87,7 +92,7 @@ def test_a_wear_of_one_tooth_is_no_wave():
 
 
 def test_a_bowed_axis_does_not_hide_the_rest():
-    """It goes round the gear once, and has no name: before it is taken out no pitch errors show beside it."""
+    """It goes round the gear once, and has no name: pitch errors and the worn side show beside it."""
     index = np.cumsum(np.random.default_rng(6).normal(0.0, 3.0, 12))
     index -= np.linspace(0.0, index[-1], 12)
     pitch = Effect("pitch", {"index_um": tuple(index - index.mean())})
@@ -109,3 +114,19 @@ def test_wear_is_measured_beside_fringes_that_have_no_name():
     assert loop.worn_sides == frozenset({Side.RIGHT}) and loop.effects == ()
     (pattern,) = loop.patterns
     assert pattern.order is None and pattern.known_everywhere and "stands in space" in pattern.describe(15.0)
+
+
+@pytest.mark.parametrize(("form", "times"), [(0.5 * NOISE, 2), (1.5 * NOISE, 1)])
+def test_sides_are_asked_again_without_what_goes_round_but_not_beside_a_large_form(form, times, monkeypatch):
+    """A form of all teeth larger than the noise decides which sides are worn, and waves beside it do not hide that."""
+    cells = cells_of(make_scan(replace(QUIET, noise_um=1.0).of_size(5_000), 1).points)
+    field, told = np.zeros(len(cells.count)), []
+    round_, all_teeth = (Pattern(order, "alike", 0.0, 1.0, size, size, 0.0, field) for order, size in ((1, NOISE), (0, form)))
+
+    def closed(*parameters):
+        told.append(parameters[-1])
+        return SimpleNamespace(residual_after=field, patterns=(round_, all_teeth))
+
+    monkeypatch.setattr(loop_module, "_closed", closed)
+    loop_module.close_loop(cells, NOISE, None, in_space=())
+    assert told == [(), (round_,)][:times]
