@@ -11,7 +11,9 @@ from scipy import stats
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.loop import close_loop, make_context
+from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.pooled import carried
+from gearwear.diagnose.space_waves import SpaceWave
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.registration import stray_limit
 from gearwear.placing.side_maps import make_side_maps
@@ -196,10 +198,16 @@ def test_an_unworn_gear_has_no_region():
 
 
 def test_a_pattern_without_a_name_may_be_off_by_its_own_size_under_each_worn_flank():
-    """Two patterns round the gear, 3 and 4 µm: 5 µm times the area, alike on one flank, independent on two; what all teeth share counts nothing."""
+    """Two patterns round the gear, 3 and 4 µm: 5 µm times the area, alike on one flank, independent on two; what all teeth share counts nothing, nor does
+    a wave in space, which the whole gear shows."""
     weights = np.zeros((3, 2, 2, 4, 5))
     weights[0, 0, 0], weights[1, 0, 0, :2], weights[2, 1, 1] = 0.5, 0.5, 0.25  # 10, 5 and 5 mm²
-    patterns = [SimpleNamespace(order=order, rms=rms) for order, rms in ((0, 0.1), (4, 0.003), (8, 0.004))]
+    patterns = [
+        Pattern(order, "alike", 0.0, 0.0, rms, rms, 0.0, np.zeros(1)) for order, rms in ((0, 0.1), (4, 0.003), (8, 0.004))
+    ]
+    patterns.append(
+        Pattern(None, "mixed", 0.0, 0.0, 0.2, 0.2, 0.0, np.zeros(1), SpaceWave(np.ones(3), np.ones(3), np.ones(3), 0.0))
+    )
     area = np.array([10.0, 5.0, 5.0])
     expected = 0.005**2 * np.outer(area, area) * np.array([[1, 1, 0], [1, 1, 0], [0, 0, 1]])
     np.testing.assert_allclose(unexplained_covariance(SimpleNamespace(patterns=patterns), weights), expected, rtol=1e-12)
