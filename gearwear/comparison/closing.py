@@ -98,7 +98,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     again = None
     if far or is_far(likeliest, scan.cells):
         scan, again = scan.located_again(likeliest)
-        likeliest = replace(scan, in_space=likeliest.in_space).explained()
+        likeliest = scan.explained()
     return replace(scan.closed(likeliest, again), undecided=tuple(scan.moved(other, again) for other in likeliest.others))
 
 
@@ -193,7 +193,9 @@ class _Scan:
             measured, cells = replace(measured, streamed=streamed), streamed.first.cells
         registration = replace(placed.registration, noise=noise(cells))  # without what goes up and down within a cell
         measured = replace(measured, placed=replace(placed, registration=registration, located=located))
-        return replace(self, measured=measured, cells=cells, located=located, rest=rest, begun=loop), again
+        return replace(
+            self, measured=measured, cells=cells, located=located, rest=rest, begun=loop, in_space=loop.in_space
+        ), again
 
     def moved(self, loop: Loop, again: Relocation | None) -> MeasuredGear:
         """With a loop; the cells of a streamed scan are moved along, not its points."""

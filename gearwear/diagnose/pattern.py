@@ -117,7 +117,7 @@ def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) ->
     value = np.where(use, residual, np.nan)
     found: list[Pattern] = []
     for _ in range(rules().most_patterns):
-        pattern = _strongest(grid, value, noise, {p.order for p in found if p.order is not None})
+        pattern = _strongest(grid, value, noise, {p.order for p in found})
         if pattern is None:
             break
         found.append(pattern)
@@ -144,7 +144,7 @@ def order_share(grid: CellGrid, field: Floats, order: int) -> float:
     return float(np.nanmean(np.where(np.isfinite(sides), part, np.nan) ** 2)) / max(whole, 1e-300)
 
 
-def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> Pattern | None:
+def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int | None]) -> Pattern | None:
     sides = grid.sides(value)
     if sides.shape[2] < rules().pattern_rows or sides.shape[0] < rules().pattern_teeth:
         return None  # planar sections and gears of few teeth give too few repetitions for this test
