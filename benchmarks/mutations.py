@@ -53,7 +53,8 @@ MUTATIONS = [
         ("inspection/radial.py", "1.0, 1.5, 2.5, 4.0", "1.0, 1.5, 2.0, 4.0", "inspection/test_radial.py"),
         ("brep/ends.py", "END_TOLERANCE = 2e-8", "END_TOLERANCE = 2e-3", "brep/test_ends.py"),
         # waves that stand in space
-        ("diagnose/space_waves.py", "if min(one.gain - rules().errors * one.error for one in told) <= 0.0", "if False", "diagnose/core/test_space_waves.py"),
+        ("diagnose/space_waves.py", "if not all(one.gain > rules().errors * one.error for one in told)", "if False", "diagnose/core/test_space_waves.py"),
+        ("diagnose/space_waves.py", "sheet.weight > 0.0])) < rules().pattern_teeth", "sheet.weight > 0.0])) < 1", "diagnose/core/test_space_waves.py"),
         ("diagnose/space_waves.py", "for label in (self.place, self.flank):", "for label in (self.flank,):", "diagnose/core/test_space_waves.py"),
         ("diagnose/loop.py", "known, loop = waves, closed(waves)", "break", "diagnose/core/test_space_waves.py"),
         ("diagnose/loop.py", "or any(pattern.is_form(noise) for pattern in loop.patterns)", "", "diagnose/core/test_space_waves.py"),

@@ -8,6 +8,7 @@ the gear's own differs from tooth to tooth by chance, or is alike in the teeth's
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -98,11 +99,12 @@ def find_space_waves(cells: Cells, noise: float) -> tuple[SpaceWave, ...]:
     tuple of SpaceWave
         Each was found in either half of the teeth and lowers the error of the other; at most as many as patterns are reported.
     """
-    grid = cells.grid
-    if grid.rows < rules().pattern_rows or grid.gear.teeth < rules().pattern_teeth or not cells.seen.any():
+    if cells.grid.rows < rules().pattern_rows or not cells.seen.any():
+        return ()
+    sheet = _Sheet.of(cells, noise)
+    if len(np.unique(sheet.points.tooth[sheet.weight > 0.0])) < rules().pattern_teeth:
         return ()
     found = list[SpaceWave]()
-    sheet = _Sheet.of(cells, noise)
     for _ in range(rules().most_patterns):
         one = _strongest(sheet, noise)
         if one is None:
@@ -134,7 +136,7 @@ class _Sheet:
         for _ in range(2):  # wear, chips and strays are no wave: what stands far off is left out
             left = whole.filtered(whole.value[:, None])[:, 0]
             scale = 1.4826 * float(np.median(np.abs(left[whole.weight > 0.0])))
-            whole = replace(whole, weight=np.where(np.abs(left) < rules().errors * scale, weight, 0.0))
+            whole = replace(whole, weight=np.where(np.abs(left) <= rules().errors * scale, weight, 0.0))
         return whole
 
     def without(self, wave: SpaceWave) -> _Sheet:
@@ -159,16 +161,9 @@ class _Sheet:
         return np.asarray((self.points.normal * self.weight[:, None]).T @ self.points.normal, dtype=np.float64)
 
     def every_other(self, start: int) -> _Sheet:
-        """Every other tooth alone."""
-        return replace(self, weight=np.where(self.points.tooth % 2 == start, self.weight, 0.0))
-
-    def near(self, vector: Floats) -> Floats:
-        """The vector of most `gain_about`, from one close by."""
-        return np.asarray(minimize(lambda k: -self.gain_about(k), vector, method="Nelder-Mead", options=CLOSER).x)
-
-    def closest(self, vector: Floats) -> Floats:
-        """The vector of most `gain`, from one close by."""
-        return np.asarray(minimize(lambda k: -self.gain(k), vector, method="Nelder-Mead", options=CLOSER).x)
+        """Every other of the teeth that are seen, alone."""
+        seen = np.unique(self.points.tooth[self.weight > 0.0])
+        return replace(self, weight=np.where(np.isin(self.points.tooth, seen[start::2]), self.weight, 0.0))
 
     def gain(self, vector: Floats) -> float:
         """Fall of the weighted square by the wave of a vector, beside all that is taken off."""
@@ -205,17 +200,22 @@ def _means(values: Floats, weight: Floats, label: Ints) -> Floats:
 def _strongest(sheet: _Sheet, noise: float) -> SpaceWave | None:
     """The strongest wave; None where one half of the teeth does not tell the other of it, each of a wave it found by itself."""
     halves = [sheet.every_other(start) for start in range(2)]
-    lines = [half.near(_line(half)) for half in halves]
+    lines = [_climbed(half.gain_about, _line(half)) for half in halves]
     told = [_told(half, other, line) for half, other, line in zip(halves, reversed(halves), lines, strict=True)]
-    if min(one.gain - rules().errors * one.error for one in told) <= 0.0:
+    if not all(one.gain > rules().errors * one.error for one in told):
         return None
-    vector = sheet.closest(lines[int(np.argmax([sheet.gain(line) for line in lines]))])
+    vector = _climbed(sheet.gain, max(lines, key=sheet.gain))
     through = sheet.filtered(_columns(sheet.points, vector))
     cosine, sine = np.split(_solved(through, sheet.left, sheet.weight), 2)
     wave = SpaceWave(vector, cosine, sine, max(one.p_value for one in told))
     flank = sheet.points.surface == FLANK
     size = float(np.sqrt(np.mean(wave.deviation(sheet.points)[flank] ** 2)))
     return wave if size > rules().least_share * noise else None
+
+
+def _climbed(gain: Callable[[Floats], float], vector: Floats) -> Floats:
+    """The vector of most gain, from one close by."""
+    return np.asarray(minimize(lambda k: -gain(k), vector, method="Nelder-Mead", options=CLOSER).x)
 
 
 def _columns(points: SurfacePoints, vector: Floats) -> Floats:
@@ -251,9 +251,17 @@ def _told(half: _Sheet, other: _Sheet, vector: Floats) -> _Told:
 
 def _line(sheet: _Sheet) -> Floats:
     """The line of the spectrum in space that stands out most of those of its length, waves per mm (3,)."""
-    points, grid = sheet.points, sheet.grid
-    radius = grid.gear.tip_radius
-    shortest = max(CELLS_PER_WAVE * grid.size, radius / WAVES_PER_RADIUS)
+    vectors, power, step = _spectrum(sheet)
+    rings, floors = np.rint(np.hypot(*vectors[:2]) / (SHELL * step[0])), np.rint(np.abs(vectors[2]) / (SHELL * step[2]))
+    shell = np.unique(rings * (floors.max() + 1.0) + floors, return_inverse=True)[1]
+    typical = ndimage.median(power, shell, np.arange(shell.max() + 1))[shell]
+    return np.asarray(vectors[:, int(np.argmax(power / np.maximum(typical, 1e-300)))])
+
+
+def _spectrum(sheet: _Sheet) -> tuple[Floats, Floats, list[float]]:
+    """The lines that are looked for: vectors (3, l), waves per mm; by how much each lowers the weighted square (l,); and their steps along x, y, z."""
+    points, radius = sheet.points, sheet.grid.gear.tip_radius
+    shortest = max(CELLS_PER_WAVE * sheet.grid.size, radius / WAVES_PER_RADIUS)
     voxel = shortest / VOXELS_PER_WAVE
     at = np.rint((points.position - points.position.min(axis=0)) / voxel).astype(np.int64)
     shape = [fft.next_fast_len(2 * int(extent)) for extent in at.max(axis=0) + 1]
@@ -262,17 +270,13 @@ def _line(sheet: _Sheet) -> Floats:
     size = math.prod(shape)
     sums = [np.bincount(flat, column, size).reshape(shape) for column in carried.T]
     waves = [np.fft.fftfreq(n, voxel) for n in shape]
-    step = [1.0 / (n * voxel) for n in shape]
     across = np.hypot(waves[0][:, None], waves[1][None, :])
     length = np.sqrt(across[:, :, None] ** 2 + waves[2] ** 2)
-    looked = (length >= 1.0 / radius) & (length <= 1.0 / shortest) & (waves[0][:, None, None] >= 0.0)
-    which = np.nonzero(looked)
+    # A wave and its mirror image are one.
+    which = np.nonzero((length >= 1.0 / radius) & (length <= 1.0 / shortest) & (waves[0][:, None, None] >= 0.0))
     plane = fft.fftn(sums[0] + 1j * sums[1])
     mirrored = np.conj(plane[tuple(-one for one in which)])
     moment = np.stack([(plane[which] + mirrored) / 2.0, (plane[which] - mirrored) / 2.0j, fft.fftn(sums[2])[which]])
     power = 2.0 * np.real((np.conj(moment) * (np.linalg.pinv(sheet.squares, rcond=SEEN) @ moment)).sum(axis=0))
-    rings, floors = np.rint(across[which[:2]] / (SHELL * step[0])), np.rint(np.abs(waves[2][which[2]]) / (SHELL * step[2]))
-    shell = np.unique(rings * (floors.max() + 1.0) + floors, return_inverse=True)[1]
-    typical = ndimage.median(power, shell, np.arange(shell.max() + 1))[shell]
-    best = int(np.argmax(power / np.maximum(typical, 1e-300)))
-    return np.array([own[at[best]] for own, at in zip(waves, which, strict=True)])
+    vectors = np.stack([own[places] for own, places in zip(waves, which, strict=True)])
+    return vectors, np.asarray(power, dtype=np.float64), [1.0 / (n * voxel) for n in shape]

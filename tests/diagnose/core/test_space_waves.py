@@ -83,6 +83,20 @@ def test_what_is_the_gears_own_is_no_wave():
     assert find_space_waves(cells.with_deviation(points.deviation + own), NOISE) == ()
 
 
+@pytest.mark.parametrize("reach", [14.0, 40.0, 75.0, 110.0])
+def test_few_teeth_tell_of_no_wave_that_is_not_there(reach):
+    """One tooth to eight of twelve: too few to tell one another, and none where they are enough. A warning would be an error here."""
+    points = make_scan(QUIET, 3).points
+    assert find_space_waves(cells_of(points[np.abs(np.degrees(np.arctan2(points[:, 1], points[:, 0]))) < reach]), NOISE) == ()
+
+
+def test_a_wave_on_two_thirds_of_the_teeth_comes_back():
+    points = make_scan(QUIET, 3).points
+    seen = points[np.abs(np.degrees(np.arctan2(points[:, 1], points[:, 0]))) < 120.0]
+    (found,) = find_space_waves(cells_of(carried(seen, 9.0, 0.006, [0.8, 0.6, 0.0])), NOISE)
+    assert found.wavelength == pytest.approx(9.0, rel=0.02) and found.amplitude == pytest.approx(0.006, rel=0.1)
+
+
 def test_a_wear_of_one_tooth_is_no_wave():
     cells = cells_of(make_scan(QUIET, 5).points)
     points = cells.points
