@@ -26,6 +26,8 @@ COMMON = 0.5
 
 COLUMNS, CHANCE = 5, 3.0
 """Columns side by side over which flanks seen at a height are counted; standard deviations of such a count that are chance."""
+LINES = 8
+"""Places side by side of which one has no more lines of a scan than their mean has, less an eighth of a line."""
 FEW = 0.01
 """Share of the points of the place with most that may be strays."""
 
@@ -115,11 +117,12 @@ def seen_places(count: Floats, fillet: int) -> Bools:
 
 
 def _reached(points: Floats) -> Bools:
-    """(n,) which of a row of places with so many points lie between its ends: the outermost that do not have `COMMON` of the points of the next."""
+    """(n,) which of a row of places with so many points lie between its ends: the outermost that do not have `COMMON` of the points of the least of the next
+    `LINES`. A scan made of lines has one more of them in one place than in the next, and as many as the others in an outermost that is whole."""
     inside = np.ones(len(points), dtype=bool)
     for ahead, many in ((inside, points), (inside[::-1], points[::-1])):
         for at in range(len(many) - 1):
-            if many[at] > FEW * many.max() and many[at] >= COMMON * many[at + 1]:
+            if many[at] > FEW * many.max() and many[at] >= COMMON * many[at + 1 : at + 1 + LINES].min():
                 break
             ahead[at] = False
     return inside

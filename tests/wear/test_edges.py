@@ -8,7 +8,7 @@ import pytest
 from gearwear.design.surface import locate
 from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.placing.side_maps import make_side_maps
-from gearwear.wear.edges import end_strip, end_zone
+from gearwear.wear.edges import end_strip, end_zone, seen_places
 from gearwear.wear.regions import find_wear
 from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_helical import designed
@@ -65,3 +65,36 @@ def test_what_was_not_seen_has_no_volume(low):
         assert region.volume + wear.unseen > GEAR.volume(patch)
     else:
         assert wear.unseen == 0.0
+
+
+@pytest.mark.parametrize("lines", [1.0, 1.3, 1.5, 1.75, 1.85, 2.4, 7.0])
+def test_a_scan_made_of_lines_goes_on_to_the_last_of_them(lines):
+    """Lines at one distance over the whole face, a number of them in a row of cells that is not whole: every row was seen, wherever the first line lies."""
+    rows = 20
+    for first in np.linspace(0.0, 0.99, 23):
+        at = (np.arange(lines * rows) + first) / lines
+        number = np.histogram(at, np.arange(rows + 1.0))[0].astype(np.float64)
+        number[[0, -1]] *= 0.9  # some are lost
+        for other in (number, number[::-1]):
+            count = np.broadcast_to(10.0 * other[None, None, :, None], (12, 2, rows, 9))
+            assert seen_places(count, 3)[:, other > 0].all()
+
+
+def test_a_row_of_which_a_third_was_scanned_is_none():
+    count = np.full((12, 2, 20, 9), 9.0)
+    count[:, :, 0] = 3.0
+    assert not seen_places(count, 3)[:, 0].any() and seen_places(count, 3)[:, 1:].all()
+
+
+def test_wear_at_the_end_of_a_face_that_was_scanned_in_lines_is_measured():
+    patch = Patch(4, 1, 0.08, (8.0, 18.0), (12.0, 24.0))
+    cloud, design = scan(GEAR, 60_000, noise=0.004, seed=5, wear=(patch,)), designed(GEAR)
+    points = (cloud.points - cloud.translation) @ cloud.rotation
+    grid = CellGrid.for_scan(design, len(points))
+    # Two lines in one row of cells and one in the next, as the last has; of that some are lost.
+    row, place = np.divmod(points[:, 2] / grid.row_height, 1.0)
+    on_line = np.where(row % 2 == (grid.rows % 2), np.abs(np.abs(place - 0.5) - 0.25) < 0.1, np.abs(place - 0.5) < 0.1)
+    points = points[on_line & ((row < grid.rows - 1) | (np.random.default_rng(2).random(len(points)) < 0.9))]
+    wear = find_wear(bin_points(locate(points, design), grid), 0.004)
+    (region,) = wear.regions
+    assert region.volume == pytest.approx(0.5 * GEAR.volume(patch), abs=3.0 * region.volume_std)  # half of it lies beyond the end
