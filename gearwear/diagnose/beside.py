@@ -7,6 +7,7 @@ few others only these few are solved for (Woodbury 1950).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -40,6 +41,17 @@ class Block:
     which: Ints
 
 
+def blocks_of(place: Ints, candidates: Sequence[Ints]) -> tuple[Block, ...]:
+    """Candidates in groups of one size, by the place (p + 1,) of each column among those that anybody sees."""
+    seen = [at[at != NOTHING] for at in (place[columns] for columns in candidates)]
+    sizes = np.array([len(columns) for columns in seen], dtype=np.int64)
+    groups = []
+    for size in np.unique(sizes[sizes > 0]):
+        at = np.flatnonzero(sizes == size)
+        groups.append(Block(at, np.array([seen[i] for i in at])))
+    return tuple(groups)
+
+
 @dataclass(frozen=True)
 class Beside:
     """The sums of columns without what others span of them: a fit on them is the fit on both (Frisch and Waugh 1933, Lovell 1963).
@@ -57,8 +69,10 @@ class Beside:
         Weighted sum of squares that the others leave.
     own : (q,) float
         Weighted squares of the whole columns; by these the ridge is measured.
-    candidates : tuple of (k,) int
-        Columns of each that is tried.
+    candidates : int
+        How many are tried.
+    blocks : tuple of Block
+        These, `blocks_of` their columns.
     """
 
     place: Ints
@@ -66,18 +80,8 @@ class Beside:
     moment: Floats
     square: float
     own: Floats
-    candidates: tuple[Ints, ...] = ()
-
-    @cached_property
-    def _blocks(self) -> tuple[Block, ...]:
-        """The candidates in groups of one size."""
-        seen = [at[at != NOTHING] for at in (self.place[columns] for columns in self.candidates)]
-        sizes = np.array([len(columns) for columns in seen], dtype=np.int64)
-        groups = []
-        for size in np.unique(sizes[sizes > 0]):
-            at = np.flatnonzero(sizes == size)
-            groups.append(Block(at, np.array([seen[i] for i in at])))
-        return tuple(groups)
+    candidates: int = 0
+    blocks: tuple[Block, ...] = ()
 
     @cached_property
     def _known(self) -> dict[int, tuple[Floats, Floats]]:
@@ -95,6 +99,28 @@ class Beside:
             np.matmul(self.information[:, which], way, out=sums[:-1])
             self._known[at] = sums, self.moment[which] @ way
         return self._known[at]
+
+    def _squared_together(self, places: tuple[int, ...], which: Ints) -> list[tuple[Ints, Floats, Floats]]:
+        """`_squared` of several candidates (c,) with their columns (c, size): those of as many columns square to each other together, by where they are in
+        `places`, (j,), (j, p, k) and (j, k)."""
+        if places not in self._known_together:
+            each = [self._squared(at, own) for at, own in zip(places, which, strict=True)]
+            sizes = np.array([len(moment) for _, moment in each])
+            groups = [np.flatnonzero(sizes == size) for size in np.unique(sizes)]
+            self._known_together[places] = [
+                (own, np.stack([each[i][0] for i in own]), np.stack([each[i][1] for i in own])) for own in groups
+            ]
+        return self._known_together[places]
+
+    @cached_property
+    def _known_together(self) -> dict[tuple[int, ...], list[tuple[Ints, Floats, Floats]]]:
+        """What `_squared_together` has put together."""
+        return {}
+
+    @cached_property
+    def _diagonal(self) -> Floats:
+        """Square of each column beside the others, (q,)."""
+        return np.diag(self.information)
 
     @cached_property
     def _of_each(self) -> tuple[Floats, Floats]:
@@ -147,30 +173,32 @@ class Beside:
         count, bases, (moments, own_squares) = len(bases), self.place[bases], self._of_each
         root = np.sqrt(own_squares[bases])
         root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
-        across, aim = self._across(bases) / root[..., None], moments[bases] / root
-        scaled = np.take_along_axis(across, np.maximum(bases, 0)[:, None, :], axis=2) / root[:, None, :]
-        scaled *= (bases != NOTHING)[:, None, :]
+        across, aim, there = self._across(bases), moments[bases] / root, bases != NOTHING
+        across /= root[..., None]
+        scaled = self.information[bases[:, :, None], bases[:, None, :]] / root[..., None] / root[:, None, :]
+        scaled *= there[:, :, None] & there[:, None, :]
         scaled += RIDGE * np.eye(bases.shape[1])
         inverse = np.linalg.inv(scaled)
         spanned, amplitudes = inverse @ across, (inverse @ aim[..., None])[..., 0]
         rest = self.moment - (amplitudes[:, None] @ across)[:, 0]
-        left = np.diag(self.information) - (spanned * across).sum(axis=1)
+        left = self._diagonal - (spanned * across).sum(axis=1)
         good = left >= SPANNED * self.own  # a column that the base already spans has nothing left: no gain from rounding
-        gains = np.zeros((count, len(self.candidates)))
-        for block in self._blocks:
+        gains = np.zeros((count, self.candidates))
+        for block in self.blocks:
             which = block.which
             fine, size = good[:, which].all(axis=2), which.shape[1]
             if size >= MANY:
-                for place, at in enumerate(block.at.tolist()):
-                    if not fine[:, place].any():
-                        continue
-                    sums, moment = self._squared(at, which[place])
-                    own = sums[bases] / root[..., None]
-                    beyond = moment - (amplitudes[:, None] @ own)[:, 0]
-                    inner, mixed = scaled - own @ own.swapaxes(1, 2), own @ beyond[..., None]
-                    inner[:, np.arange(bases.shape[1]), np.arange(bases.shape[1])] += RIDGE
-                    back = (mixed * np.linalg.solve(inner, mixed)).sum(axis=(1, 2))
-                    gains[:, at] = np.where(fine[:, place], (beyond**2).sum(axis=1) + back, 0.0)
+                some = np.flatnonzero(fine.any(axis=0))
+                if not len(some):
+                    continue
+                for among, sums, moment in self._squared_together(tuple(block.at[some].tolist()), which[some]):
+                    place = some[among]
+                    own = sums[:, bases] / root[..., None]
+                    beyond = moment[:, None] - (amplitudes[:, None] @ own)[:, :, 0]
+                    inner, mixed = scaled - own @ own.swapaxes(2, 3), own @ beyond[..., None]
+                    inner += RIDGE * np.eye(bases.shape[1])
+                    back = (mixed * np.linalg.solve(inner, mixed)).sum(axis=(2, 3))
+                    gains[:, block.at[place]] = np.where(fine[:, place], ((beyond**2).sum(axis=2) + back).T, 0.0)
                 continue
             value = np.zeros(fine.shape)
             if size == 1:

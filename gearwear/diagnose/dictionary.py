@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,11 +19,15 @@ from gearwear.placing.cells import CellGrid, Cells
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """One effect at one shape, and where its columns stand."""
+    """One effect at one shape, and where its columns stand; the first of them tells candidates of a dictionary apart."""
 
     effect: Effect
     shape: Shape
     columns: Ints
+    first: int = field(init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "first", int(self.columns[0]) if len(self.columns) else -1)
 
     @property
     def name(self) -> str:

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.diagnose.beside import NOTHING, RIDGE, Beside
+from gearwear.diagnose.beside import NOTHING, RIDGE, Beside, blocks_of
 from gearwear.diagnose.columns import CellColumns
 
 BATCH = 4096
@@ -124,7 +124,9 @@ class Gram:
         place[seen] = np.arange(len(seen))
         across = a[seen[:, None], base]
         left = a[seen[:, None], seen] - across @ inverse @ across.T
-        return Beside(place, left, b[seen] - across @ amplitudes, square, np.diag(a)[seen], tuple(candidates))
+        return Beside(
+            place, left, b[seen] - across @ amplitudes, square, np.diag(a)[seen], len(candidates), blocks_of(place, candidates)
+        )
 
     def held_out(self, which: Ints) -> Floats:
         """(folds,) weighted sum of squares of each fold under the fit on the others."""

@@ -67,17 +67,30 @@ class Problem:
         return np.asarray(np.einsum("tii->i", self.gram.information) > 0.0)
 
     @cached_property
-    def _of_name(self) -> dict[str, Ints]:
-        """Which candidates are shapes of one effect."""
-        names = np.array([c.name for c in self.dictionary.candidates])
-        return {name: np.flatnonzero(names == name) for name in names.tolist()}
+    def _of_name(self) -> dict[str, int]:
+        """Numbers of the effects, in the order of their first candidates."""
+        return {name: i for i, name in enumerate(dict.fromkeys(c.name for c in self.dictionary.candidates))}
+
+    @cached_property
+    def _effects(self) -> Ints:
+        """Which effect each candidate is a shape of, (n,)."""
+        return np.array([self._of_name[c.name] for c in self.dictionary.candidates], dtype=np.int64)
 
     @cached_property
     def by_name(self) -> tuple[Ints, Ints]:
-        """All candidates, those of one effect behind one another, and where each effect begins."""
-        groups = list(self._of_name.values())
-        ends = np.cumsum([len(one) for one in groups], dtype=np.int64)
-        return (np.concatenate(groups), np.concatenate([[0], ends[:-1]])) if groups else (ends, ends)
+        """All candidates, those of one effect behind one another, and where each effect begins; and behind the last."""
+        ends = np.cumsum(np.bincount(self._effects, minlength=len(self._of_name)), dtype=np.int64)
+        return np.argsort(self._effects, kind="stable"), np.concatenate([[0], ends])
+
+    @cached_property
+    def _columns_of(self) -> dict[int, tuple[int, ...]]:
+        """Columns of the candidates that were asked for, by the first of them."""
+        return {}
+
+    def _columns(self, candidate: Candidate) -> tuple[int, ...]:
+        if candidate.first not in self._columns_of:
+            self._columns_of[candidate.first] = tuple(candidate.columns.tolist())
+        return self._columns_of[candidate.first]
 
     def gains(self, base: tuple[Candidate, ...]) -> Floats:
         """Fall of the sum of squares with each candidate added to `base`, (n,); 0 for other shapes of its effects."""
@@ -88,21 +101,26 @@ class Problem:
         """Of each of some models the sum of squares that it and the pose leave, (k,), and the fall of it with each candidate added, (k, n); 0 for
         other shapes of its effects."""
         squares, gains = np.zeros(len(bases)), np.zeros((len(bases), len(self.dictionary.candidates)))
-        alike = dict[tuple[int, ...], list[int]]()
-        few = [_own_columns(tuple(c for c in base if len(c.columns) < MANY)) for base in bases]
+        alike, few, named = (
+            dict[tuple[int, ...], list[int]](),
+            list[tuple[int, ...]](),
+            np.zeros((len(bases), len(self._of_name)), np.bool_),
+        )
         for i, base in enumerate(bases):
-            many = _own_columns(tuple(c for c in base if len(c.columns) >= MANY))
-            alike.setdefault(tuple(many.tolist()), []).append(i)
+            own, many = tuple[int, ...](), tuple[int, ...]()
+            for candidate in base:
+                columns = self._columns(candidate)
+                own, many = (own, many + columns) if len(columns) >= MANY else (own + columns, many)
+            few.append(own)
+            alike.setdefault(many, []).append(i)
+            named[i, [self._of_name[candidate.name] for candidate in base]] = True
         for columns, at in alike.items():
             if columns not in self._beside_many:
                 self._beside_many[columns] = self.beside_pose.beside(np.array(columns))
-            together = np.full((len(at), max(len(few[i]) for i in at)), NOTHING)
-            for row, i in zip(together, at, strict=True):
-                row[: len(few[i])] = few[i]
+            most = max(len(few[i]) for i in at)
+            together = np.array([few[i] + (NOTHING,) * (most - len(few[i])) for i in at], dtype=np.int64)
             squares[at], gains[at] = self._beside_many[columns].tried(together)
-        for i, base in enumerate(bases):
-            for candidate in base:
-                gains[i, self._of_name[candidate.name]] = 0.0
+        gains[named[:, self._effects]] = 0.0
         return squares, gains
 
     def fitted(self, chosen: tuple[Candidate, ...]) -> tuple[Floats, float]:
@@ -213,7 +231,7 @@ def exchange(problem: Problem, chosen: tuple[Candidate, ...], around: Around | N
 
 def _key(chosen: tuple[Candidate, ...]) -> frozenset[int]:
     """Tells sets of candidates apart, by the first column of each."""
-    return frozenset(int(c.columns[0]) for c in chosen)
+    return frozenset([c.first for c in chosen])
 
 
 Move = tuple[tuple[Candidate, ...], float]
@@ -249,10 +267,9 @@ class Around:
 
     def price(self, candidate: Candidate) -> float:
         """`Problem.penalty`."""
-        first = int(candidate.columns[0])
-        if first not in self.prices:
-            self.prices[first] = self.problem.penalty(candidate)
-        return self.prices[first]
+        if candidate.first not in self.prices:
+            self.prices[candidate.first] = self.problem.penalty(candidate)
+        return self.prices[candidate.first]
 
     def look(self, bases: Sequence[tuple[Candidate, ...]]) -> None:
         """Find out about models, all that are new together."""
@@ -261,9 +278,9 @@ class Around:
             return
         problem = self.problem
         squares, gains = problem.tried(list(new.values()))
-        for (key, base), square, gain in zip(new.items(), squares.tolist(), gains, strict=True):
-            own = square / problem.unit + sum(self.price(c) for c in base)
-            near = _most_promising(problem, gain, rules().tried)
+        promising = _most_promising(problem, gains, rules().tried)
+        for (key, base), square, gain, near in zip(new.items(), squares.tolist(), gains, promising, strict=True):
+            own = square / problem.unit + sum([self.price(c) for c in base])
             added = [(c, own - float(gain[i]) / problem.unit + self.price(c)) for i, c in near]
             self.known[key] = own, added
 
@@ -291,25 +308,30 @@ def _moves(problem: Problem, chosen: tuple[Candidate, ...], around: Around) -> l
         for pair in pairs[i]:
             moves += around.added(pair)
     moves += around.added(chosen)
-    return [move for move in moves if problem.keeps(move[0])]
+    return [move for move in moves if problem.keeps(move[0])] if problem.always else moves
 
 
 def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:
     """Candidates of greatest net gain over `base`, the best shape of each effect only."""
-    return [candidate for _, candidate in _most_promising(problem, problem.gains(base), count)]
+    return [candidate for _, candidate in _most_promising(problem, problem.gains(base)[None], count)[0]]
 
 
-def _most_promising(problem: Problem, gains: Floats, count: int) -> list[tuple[int, Candidate]]:
-    """The same from what each candidate gains, (n,), and which they are."""
-    net = gains / problem.unit - problem.prices
-    order, firsts = problem.by_name
+def _most_promising(problem: Problem, gains: Floats, count: int) -> list[list[tuple[int, Candidate]]]:
+    """The same from what each candidate gains beside each of some models, (k, n), and which they are."""
+    order, ends = problem.by_name
     if not len(order):
-        return []
-    best, found = np.maximum.reduceat(net[order], firsts), []
-    for which in np.argsort(best)[::-1][:count].tolist():
-        if best[which] <= 0.0:
-            break
-        own = order[firsts[which] : firsts[which + 1] if which + 1 < len(firsts) else None]
-        place = int(own[np.argmax(net[own])])
-        found.append((place, problem.dictionary.candidates[place]))
+        return [[] for _ in gains]
+    net = (gains / problem.unit - problem.prices)[:, order]
+    best = np.maximum.reduceat(net, ends[:-1], axis=1)
+    ranked = np.argsort(best, axis=1)[:, ::-1][:, :count]
+    places, bounds, found = order.tolist(), ends.tolist(), []
+    for own, worth, most in zip(net, ranked.tolist(), np.take_along_axis(best, ranked, axis=1).tolist(), strict=True):
+        near = list[tuple[int, Candidate]]()
+        for which, value in zip(worth, most, strict=True):
+            if value <= 0.0:
+                break
+            start = bounds[which]
+            place = places[start + int(own[start : bounds[which + 1]].argmax())]
+            near.append((place, problem.dictionary.candidates[place]))
+        found.append(near)
     return found

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gearwear.diagnose.beside import Beside
+from gearwear.diagnose.beside import Beside, blocks_of
 from gearwear.diagnose.gram import Gram
 from tests.diagnose.core.toy import left
 
@@ -179,7 +179,8 @@ def test_columns_that_nobody_sees_take_no_part_in_what_is_held_beside_others(see
 def test_of_columns_that_are_spanned_already_rounding_may_leave_less_than_nothing():
     """With so little left of them no third column can lose anything to them."""
     left = np.diag([-1e-8, -1e-8, 0.5])
-    beside = Beside(np.array([0, 1, 2, -1]), left, np.array([0.0, 0.0, 0.3]), 2.0, np.ones(3), (np.array([2]),))
+    place = np.array([0, 1, 2, -1])
+    beside = Beside(place, left, np.array([0.0, 0.0, 0.3]), 2.0, np.ones(3), 1, blocks_of(place, [np.array([2])]))
     both = beside.beside(np.array([0, 1]))
     assert both.square == pytest.approx(2.0) and both.information[2, 2] == pytest.approx(0.5)
     assert both.tried(np.zeros((1, 0), int))[1][0, 0] == pytest.approx(0.3**2 / 0.5)
