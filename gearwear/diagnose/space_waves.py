@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import fft, ndimage
 from scipy.optimize import minimize
 from scipy.special import stdtr
@@ -253,7 +254,8 @@ def _line(sheet: _Sheet) -> Floats:
     """The line of the spectrum in space that stands out most of those of its length, waves per mm (3,)."""
     vectors, power, step = _spectrum(sheet)
     rings, floors = np.rint(np.hypot(*vectors[:2]) / (SHELL * step[0])), np.rint(np.abs(vectors[2]) / (SHELL * step[2]))
-    shell = np.unique(rings * (floors.max() + 1.0) + floors, return_inverse=True)[1]
+    shell = (rings * (floors.max() + 1.0) + floors).astype(np.int64)
+    shell = (np.cumsum(np.bincount(shell) > 0) - 1)[shell]  # those that have any line, numbered
     typical = ndimage.median(power, shell, np.arange(shell.max() + 1))[shell]
     return np.asarray(vectors[:, int(np.argmax(power / np.maximum(typical, 1e-300)))])
 
@@ -265,18 +267,29 @@ def _spectrum(sheet: _Sheet) -> tuple[Floats, Floats, list[float]]:
     voxel = shortest / VOXELS_PER_WAVE
     at = np.rint((points.position - points.position.min(axis=0)) / voxel).astype(np.int64)
     shape = [fft.next_fast_len(2 * int(extent)) for extent in at.max(axis=0) + 1]
-    flat = np.ravel_multi_index(at.T, shape)
+    extent = at.max(axis=0) + 1
+    flat = np.ravel_multi_index(at.T, extent)
     carried = (sheet.weight * sheet.left)[:, None] * points.normal
-    size = math.prod(shape)
-    sums = [np.bincount(flat, column, size).reshape(shape) for column in carried.T]
-    waves = [np.fft.fftfreq(n, voxel) for n in shape]
-    across = np.hypot(waves[0][:, None], waves[1][None, :])
+    sums = [np.bincount(flat, column, math.prod(extent)).reshape(extent) for column in carried.T]
+    # As many lines to either side of 0 along each axis as the shortest wave has, less than half of all.
+    lines = [np.r_[: int(n / VOXELS_PER_WAVE) + 1, n - int(n / VOXELS_PER_WAVE) : n] for n in shape]
+    waves = [np.fft.fftfreq(n, voxel)[own] for n, own in zip(shape, lines, strict=True)]
+    ahead = waves[0][waves[0] >= 0.0]  # a wave and its mirror image are one
+    across = np.hypot(ahead[:, None], waves[1][None, :])
     length = np.sqrt(across[:, :, None] ** 2 + waves[2] ** 2)
-    # A wave and its mirror image are one.
-    which = np.nonzero((length >= 1.0 / radius) & (length <= 1.0 / shortest) & (waves[0][:, None, None] >= 0.0))
-    plane = fft.fftn(sums[0] + 1j * sums[1])
-    mirrored = np.conj(plane[tuple(-one for one in which)])
-    moment = np.stack([(plane[which] + mirrored) / 2.0, (plane[which] - mirrored) / 2.0j, fft.fftn(sums[2])[which]])
+    which = np.nonzero((length >= 1.0 / radius) & (length <= 1.0 / shortest))
+    plane, mirror = _transformed(sums[0] + 1j * sums[1], shape, lines), tuple(-one for one in which)
+    mirrored = np.conj(plane[mirror])
+    along = _transformed(sums[2], shape, lines)
+    moment = np.stack([(plane[which] + mirrored) / 2.0, (plane[which] - mirrored) / 2.0j, along[which]])
     power = 2.0 * np.real((np.conj(moment) * (np.linalg.pinv(sheet.squares, rcond=SEEN) @ moment)).sum(axis=0))
     vectors = np.stack([own[places] for own, places in zip(waves, which, strict=True)])
     return vectors, np.asarray(power, dtype=np.float64), [1.0 / (n * voxel) for n in shape]
+
+
+def _transformed(values: NDArray[np.inexact], shape: list[int], lines: list[Ints]) -> NDArray[np.complex128]:
+    """Some lines of the spectrum of values, which are 0 from them up to `shape`, along each axis; the last axis first: what is 0, and lines that nobody
+    asks for, need no transform along the others."""
+    for axis in (2, 1, 0):
+        values = fft.fft(values, shape[axis], axis=axis).take(lines[axis], axis=axis)
+    return np.asarray(values, dtype=np.complex128)

@@ -14,7 +14,7 @@ from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.pattern import Pattern
-from gearwear.diagnose.space_waves import SpaceWave, find_space_waves
+from gearwear.diagnose.space_waves import SpaceWave, _transformed, find_space_waves
 from gearwear.placing.cells import CellGrid, bin_points
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Recipe, make_scan
@@ -144,3 +144,12 @@ def test_sides_are_asked_again_without_what_goes_round_but_not_beside_a_large_fo
     monkeypatch.setattr(loop_module, "_closed", closed)
     loop_module.close_loop(cells, NOISE, None, in_space=())
     assert told == [(), (round_,)][:times]
+
+
+def test_some_lines_of_a_spectrum_are_those_of_the_whole_of_it():
+    """Values that fill a corner of a box, and of each axis the lines to either side of 0 up to a third of all."""
+    values, shape = np.random.default_rng(5).normal(size=(4, 5, 3)), [9, 10, 8]
+    lines = [np.r_[: n // 3 + 1, n - n // 3 : n] for n in shape]
+    whole = np.zeros(shape)
+    whole[:4, :5, :3] = values
+    np.testing.assert_allclose(_transformed(values, shape, lines), np.fft.fftn(whole)[np.ix_(*lines)], rtol=0.0, atol=1e-12)
