@@ -67,10 +67,19 @@ class Trials:
 
         cuts = cuts_among(problem.dictionary.first.cuts, rows)
         root = np.sqrt(weight)[:, None]
+        # What the pose, which is in every fit, leaves of a column is worked out once.
+        posed, weighted_aim = orthonormal(root * pose), root * target[:, None]
+        aim = _beside(posed, weighted_aim)
+
+        def in_stds(effect: Effect, shape: Shape, free: bool) -> Floats:
+            own = root * basis(effect, shape)
+            return _beside(posed, own) if free else own
+
+        weighted = cast(Callable[[Effect, Shape, bool], Floats], lru_cache(maxsize=REMEMBERED // max(len(rows), 1))(in_stds))
 
         @lru_cache(maxsize=FRAMES)
         def by_tooth(specific: Shaped) -> ByTooth | None:
-            return ByTooth.of(root * np.hstack([basis(effect, shape) for effect, shape in specific])) if specific else None
+            return ByTooth.of(np.hstack([weighted(effect, shape, False) for effect, shape in specific])) if specific else None
 
         def stretches(effect: Effect, shape: Shape) -> CellColumns:
             return CellColumns.of(basis(effect, shape), cuts)
@@ -86,9 +95,13 @@ class Trials:
         @lru_cache(maxsize=FRAMES)
         def gain(model: Shaped) -> Gain:
             specific = by_tooth(tuple(one for one in model if one[0].tooth_specific))
-            shared = [basis(*one) for one in model if specific is None or not one[0].tooth_specific]
-            beside = _gain_beside(np.hstack([pose, *shared]), target, weight, specific)
-            return cast(Gain, cache(lambda effect, shape: beside(basis(effect, shape))))
+            if specific is None:
+                shared = np.hstack([pose[:, :0], *(weighted(*one, True) for one in model)])
+                beside = _gain_in_stds(shared, aim)
+            else:
+                own = [weighted(*one, False) for one in model if not one[0].tooth_specific]
+                beside = _gain_in_stds(np.hstack([posed, *own]), weighted_aim, specific)
+            return cast(Gain, cache(lambda effect, shape: beside(weighted(effect, shape, specific is None))))
 
         return cls(problem, columns, gain, target, weight)
 
@@ -168,22 +181,33 @@ def _with_columns(
 def _gain_beside(base: Floats, target: Floats, weight: Floats, by_tooth: ByTooth | None = None) -> Callable[[Floats], float]:
     """Function: fall of the weighted sum of squares when columns are added to `base` and what is `by_tooth`, which are taken out of everything once."""
     root = np.sqrt(weight)[:, None]
-    weighted, aim = base * root, target[:, None] * root
-    if by_tooth is not None:
-        weighted, aim = by_tooth.beside(weighted), by_tooth.beside(aim)
-    frame = orthonormal(weighted)
-    aim = aim - frame @ (frame.T @ aim)
+    beside = _gain_in_stds(base * root, target[:, None] * root, by_tooth)
+    return lambda columns: beside(columns * root)
 
-    def gain(columns: Floats) -> float:
-        own = columns * root
+
+def _gain_in_stds(base: Floats, aim: Floats, by_tooth: ByTooth | None = None) -> Callable[[Floats], float]:
+    """The same of columns and a target (n, 1) in standard deviations."""
+    if by_tooth is not None:
+        base, aim = by_tooth.beside(base), by_tooth.beside(aim)
+    frame = orthonormal(base)
+    aim = _beside(frame, aim)
+
+    def gain(own: Floats) -> float:
         spanned, moment = frame.T @ own, (own.T @ aim)[:, 0]  # nothing that the base spans is left in `aim`
         left = own.T @ own - spanned.T @ spanned
         if by_tooth is not None:
             along = by_tooth.along(own)
             left -= along.T @ along
+        if len(moment) == 1:
+            return float(moment[0] ** 2 / left[0, 0]) if left[0, 0] != 0.0 else 0.0
         return float(moment @ np.linalg.lstsq(left, moment, rcond=1e-9)[0])
 
     return gain
+
+
+def _beside(frame: Floats, columns: Floats) -> Floats:
+    """What columns square to each other and of length 1 leave of others."""
+    return np.asarray(columns - frame @ (frame.T @ columns), dtype=np.float64)
 
 
 def orthonormal(columns: Floats) -> Floats:
@@ -193,7 +217,7 @@ def orthonormal(columns: Floats) -> Floats:
     others 2015), and several times as fast on few long ones. Where they are, by reflections.
     """
     size = np.sqrt(np.einsum("ij,ij->j", columns, columns))
-    if not (size > 0.0).all():
+    if not len(size) or not (size > 0.0).all():
         return np.linalg.qr(columns)[0]
     frame = columns / size
     try:
