@@ -5,7 +5,7 @@ With the columns of all candidates at hand once, every fit, every gain and every
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -56,9 +56,30 @@ class Gram:
     @classmethod
     def whole(cls, columns: Floats, target: Floats, weight: Floats) -> Gram:
         """The same of columns (m, p) that are not zero on many rows, all together."""
-        root = np.sqrt(weight)
-        part, aim = columns * root[:, None], target * root
-        return cls((part.T @ part)[None], (part.T @ aim)[None], np.array([aim @ aim]), np.array([weight.sum()]))
+        return cls.by_weight(columns, target)(weight)
+
+    @classmethod
+    def by_weight(cls, columns: Floats | CellColumns, target: Floats) -> Callable[[Floats], Gram]:
+        """The same as a function of the weights (m,), for many of them: where each sum goes is worked out once, and room for weighted columns kept."""
+        if isinstance(columns, CellColumns):
+            p, stretches = columns.count, [(one.rows, one.which, one.values) for one in columns.stretches if len(one.which)]
+        else:
+            p, stretches = columns.shape[1], [(slice(None), np.arange(columns.shape[1]), columns)]
+        pieces = [
+            (rows, which, (which[:, None] * p + which).reshape(-1), values, np.empty_like(values))
+            for rows, which, values in stretches
+        ]
+
+        def sums(weight: Floats) -> Gram:
+            root = np.sqrt(weight)
+            aim, information, moment = target * root, np.zeros(p * p), np.zeros(p)
+            for rows, which, at, values, part in pieces:
+                np.multiply(values, root[rows, None], out=part)
+                information[at] += (part.T @ part).reshape(-1)
+                moment[which] += part.T @ aim[rows]
+            return cls(information.reshape(1, p, p), moment[None], np.array([aim @ aim]), np.array([weight.sum()]))
+
+        return sums
 
     def solve(self, which: Ints, without: int | None = None) -> tuple[Floats, Floats]:
         """Amplitudes and inverse information of the fit on columns `which`, on all folds or all but one."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -145,11 +144,5 @@ def robust_fit(
 
 def _sums(columns: Floats, target: Floats, cuts: Ints | None) -> Callable[[Floats], Gram]:
     """The sums of columns (n, p) as a function of the weights (n,)."""
-    if cuts is None or np.count_nonzero(columns) > FEW * columns.size:
-        return partial(Gram.whole, columns, target)
-    blocks, together = (CellColumns.of(columns, cuts),), np.zeros(len(target), np.int64)
-
-    def stretch_by_stretch(weight: Floats) -> Gram:
-        return Gram.of(blocks, target, weight, together, 1)
-
-    return stretch_by_stretch
+    few = cuts is not None and np.count_nonzero(columns) <= FEW * columns.size
+    return Gram.by_weight(CellColumns.of(columns, cuts) if cuts is not None and few else columns, target)
