@@ -56,7 +56,7 @@ MUTATIONS = [
         ("diagnose/space_waves.py", "if not all(one.gain > rules().errors * one.error for one in told)", "if False", "diagnose/core/test_space_waves.py"),
         ("diagnose/space_waves.py", "sheet.weight > 0.0])) < rules().pattern_teeth", "sheet.weight > 0.0])) < 1", "diagnose/core/test_space_waves.py"),
         ("diagnose/space_waves.py", "for label in (self.place, self.flank):", "for label in (self.flank,):", "diagnose/core/test_space_waves.py"),
-        ("diagnose/loop.py", "known, loop = waves, closed(waves)", "break", "diagnose/core/test_space_waves.py"),
+        ("diagnose/loop.py", "known, (loop, finished) = waves, closed(waves)", "break", "diagnose/core/test_space_waves.py"),
         ("diagnose/loop.py", "or any(pattern.is_form(noise) for pattern in loop.patterns)", "", "diagnose/core/test_space_waves.py"),
         # limits as messages give them
         ("design/pair.py", "CENTRE_ROUNDING = 0.5e-3", "CENTRE_ROUNDING = 0.5e-5", "design/test_limits_in_messages.py"),

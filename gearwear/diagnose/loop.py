@@ -6,6 +6,7 @@ is decided first, on all cells (`worn_sides`); then the scan is explained withou
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -121,17 +122,17 @@ def close_loop(
     """
     closed = partial(_closed, cells, noise, context, effects, root_free, worn, out, begun, ruled_out, look)
     known = _of_waves(in_space or (), cells)
-    loop = closed(known)
+    loop, finished = closed(known)
     if in_space is None:
         known = _of_waves(find_space_waves(cells.with_deviation(loop.residual_after), noise), cells)
-        loop = closed(known) if known else loop
+        loop, finished = closed(known) if known else (loop, finished)
     for _ in range(rules().most_patterns):
         # What goes round the gear drowns which sides are worn: once more without it. Not where a form of all teeth larger than the noise decides that.
         waves = _unlike(loop.patterns)
         if len(waves) == len(known) or any(pattern.is_form(noise) for pattern in loop.patterns):
             break
-        known, loop = waves, closed(waves)
-    return loop
+        known, (loop, finished) = waves, closed(waves)
+    return finished()
 
 
 def _closed(
@@ -146,8 +147,9 @@ def _closed(
     ruled_out: frozenset[frozenset[Side]],
     look: bool,
     waves: tuple[Pattern, ...],
-) -> Loop:
-    """`close_loop` beside patterns that are known."""
+) -> tuple[Loop, Callable[[], Loop]]:
+    """`close_loop` beside patterns that are known: the cheapest hypothesis, and what makes of it the loop with all that the scan does not exclude. Of a
+    loop that is closed again without what it shows, nobody asks for those."""
     every = tuple(effect for effect in catalogue() if effect.searched) if effects is None else effects
     made = tuple(effect for effect in every if effect.kind is not Kind.WEAR)
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
@@ -190,14 +192,18 @@ def _closed(
     refuted = worn is None and not ran and _refuted(taken, cells, flanks)
     if refuted:
         taken = explained(frozenset(Side))
-    others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
-    named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
-    if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
-        named = tuple(_or_smoothing(effect) for effect in named)
-    taken = replace(taken, effects=named, others=others)
-    if refuted or apart.any():
-        return taken
-    return replace(taken, sides_sure=costs.beyond_doubt, sides_ruled_out=costs.ruled_out)
+
+    def finished() -> Loop:
+        others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
+        named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
+        if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
+            named = tuple(_or_smoothing(effect) for effect in named)
+        whole = replace(taken, effects=named, others=others)
+        if refuted or apart.any():
+            return whole
+        return replace(whole, sides_sure=costs.beyond_doubt, sides_ruled_out=costs.ruled_out)
+
+    return taken, finished
 
 
 def _with_margins(context: Context, cells: Cells, worn: frozenset[Side] | None) -> tuple[Context, frozenset[Side]]:

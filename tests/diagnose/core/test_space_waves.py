@@ -134,16 +134,24 @@ def test_wear_is_measured_beside_fringes_that_have_no_name():
 def test_sides_are_asked_again_without_what_goes_round_but_not_beside_a_large_form(form, times, monkeypatch):
     """A form of all teeth larger than the noise decides which sides are worn, and waves beside it do not hide that."""
     cells = cells_of(make_scan(replace(QUIET, noise_um=1.0).of_size(5_000), 1).points)
-    field, told = np.zeros(len(cells.count)), []
+    field, told, finished = np.zeros(len(cells.count)), [], []
     round_, all_teeth = (Pattern(order, "alike", 0.0, 1.0, size, size, 0.0, field) for order, size in ((1, NOISE), (0, form)))
 
     def closed(*parameters):
         told.append(parameters[-1])
-        return SimpleNamespace(residual_after=field, patterns=(round_, all_teeth))
+        finished.append(0)
+        loop, number = SimpleNamespace(residual_after=field, patterns=(round_, all_teeth)), len(told)
+
+        def whole():
+            finished[number - 1] += 1
+            return loop
+
+        return loop, whole
 
     monkeypatch.setattr(loop_module, "_closed", closed)
     loop_module.close_loop(cells, NOISE, None, in_space=())
     assert told == [(), (round_,)][:times]
+    assert finished == [0] * (times - 1) + [1]  # what else the scan does not exclude is asked once, at the last
 
 
 def test_some_lines_of_a_spectrum_are_those_of_the_whole_of_it():
