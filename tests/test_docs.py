@@ -61,6 +61,7 @@ NUMERICAL = {
     "PASSES",
     "PLACES",
     "QUARTERS",
+    "REFINED",
     "REMEMBERED",
     "SEEN",
     "SHELL",

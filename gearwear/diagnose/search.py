@@ -7,7 +7,7 @@ Several effects at once each look insignificant against what the others leave, s
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -165,13 +165,24 @@ class Problem:
 
     def possible(self, chosen: tuple[Candidate, ...], amplitudes: Floats) -> bool:
         """Whether every effect's sign and size are allowed; `amplitudes` are those of the chosen, in turn."""
+        return all(self._allowed(chosen, amplitudes))
+
+    def _allowed(self, chosen: tuple[Candidate, ...], amplitudes: Floats) -> Iterator[bool]:
+        """Of each effect whether its sign and size are."""
         at = 0
         for candidate in chosen:
             size = len(candidate.columns)
-            if not candidate.effect.allowed(amplitudes[at : at + size], candidate.shape, self.context):
-                return False
+            yield candidate.effect.allowed(amplitudes[at : at + size], candidate.shape, self.context)
             at += size
-        return True
+
+    def possible_part(self, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+        """`chosen` without effects whose sign or size is not allowed beside the others; what is known to be there stays."""
+        while True:
+            allowed = self._allowed(chosen, self.fitted(chosen)[0])
+            left = tuple(c for c, is_allowed in zip(chosen, allowed, strict=True) if is_allowed or c.name in self.always)
+            if len(left) == len(chosen):
+                return left
+            chosen = left
 
 
 def penalty(candidate: Candidate, seen: Bools | None = None) -> float:
@@ -215,7 +226,8 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bo
 
 def exchange(problem: Problem, chosen: tuple[Candidate, ...], around: Around | None = None) -> tuple[Candidate, ...]:
     """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost; `around` is what searches of this problem
-    from other starts found out, to which it adds."""
+    from other starts found out, to which it adds. Of a model from which no move leads to one that is possible, as on cells that have become fewer, the
+    effects go that are not."""
     around = around or Around(problem, {}, {}, {})  # neighbours share most of their own
     cost = around.cost(chosen)
     while True:
@@ -224,8 +236,13 @@ def exchange(problem: Problem, chosen: tuple[Candidate, ...], around: Around | N
             # What a move comes to is known from what it gains; whether its amplitudes are possible is asked where it would be taken.
             if about < least and (value := around.cost(option)) < least - 1e-6:
                 best, least = option, value
-        if best is chosen:
+        if best is chosen and not math.isinf(cost):
             return chosen
+        if best is chosen:
+            best = problem.possible_part(chosen)
+            if len(best) == len(chosen):
+                return chosen
+            least = around.cost(best)
         chosen, cost = best, least
 
 

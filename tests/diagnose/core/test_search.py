@@ -122,6 +122,18 @@ def test_what_cannot_be_is_not_chosen_however_well_it_fits():
     assert names(found(one)) == {"free"}
 
 
+def test_a_model_that_became_impossible_is_left_for_the_best_there_is():
+    """Three effects whose sign cannot be: no single move, and no swap of two, leads out of it."""
+    rng = np.random.default_rng(14)
+    q = np.linalg.qr(rng.normal(size=(ROWS, 5)))[0]
+    blocks = [(Toy(f"up{i}", low=0.0), q[:, [i]]) for i in range(3)] + [(Toy("a"), q[:, [3]]), (Toy("b"), q[:, [4]])]
+    one = problem(np.ones((ROWS, 1)), blocks, q @ np.array([-30.0, -30.0, -30.0, 30.0, 30.0]) + rng.normal(size=ROWS))
+    wrong = one.dictionary.candidates[:4]
+    assert one.cost(wrong) == np.inf
+    assert names(one.possible_part(wrong)) == {"a"}
+    assert names(exchange(one, wrong)) == names(best_of_all(one)) == {"a", "b"}
+
+
 def test_an_effect_is_taken_once_in_its_best_shape():
     rng = np.random.default_rng(12)
     shapes = rng.normal(size=(3, ROWS, 1))

@@ -11,7 +11,7 @@ from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Relie
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.search import exchange, forward
-from gearwear.diagnose.shapes import _gain_beside, orthonormal, polish, refine_shapes, shape_columns
+from gearwear.diagnose.shapes import REFINED, _gain_beside, _most_likely, orthonormal, polish, refine_shapes, shape_columns
 from tests.diagnose.core.toy import WIDTH, fit_of, grid, sides_of
 
 NOISE, COUNT = 0.004, 20.0
@@ -104,6 +104,16 @@ def test_polish_puts_the_right_effect_in_the_place_of_one_that_was_refined_first
     assert [c.name for c in polished] == ["bump"]
     after = Fit(fit.cells, fit.target, book, fit.use, fit.covariance)
     assert np.sum(after.weight * after.residual(polished) ** 2) < np.sum(after.weight * after.residual(wrong) ** 2)
+
+
+def test_of_many_models_the_cheapest_are_refined_and_each_once():
+    _, problem, _ = searched(0.02 * bump(6.4, 2.7), (Bump(), Twin()))
+    bumps, twins = ([c for c in problem.dictionary.candidates if c.name == name] for name in ("bump", "twin"))
+    pairs = [(one, other) for one in bumps for other in twins]
+    likely = _most_likely(problem, [*pairs, *((other, one) for one, other in pairs)])
+    assert len(likely) == REFINED < len(pairs)
+    dearest = max(problem.cost(pair) for pair in likely)
+    assert sum(problem.cost(pair) < dearest for pair in pairs) == REFINED - 1
 
 
 @dataclass(frozen=True)
