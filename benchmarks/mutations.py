@@ -392,6 +392,8 @@ MUTATIONS = [
         ("inspection/traces.py", "points.deviation[on] / cosine", "points.deviation[on]", "comparison/test_helical.py"),
         ("identify/ring.py", "EMPTY_RING = 0.02", "EMPTY_RING = 0.005", "identify/test_survey.py"),
         ("identify/proposal.py", "other = _other_shift(ranked[0], gauges, choices, scale_doubt)", "other = None", "identify/test_proposal.py"),
+        ("diagnose/search.py", "best = problem.possible_part(chosen)", "best = chosen", "diagnose/core/test_search.py"),
+        ("wear/edges.py", "LINES = 8", "LINES = 1", "wear/test_edges.py"),
         ("wear/edges.py", "return np.asarray(low & low[::-1])", "return np.asarray(low & False)", "wear/test_worn_side_volume.py"),
         ("wear/edges.py", "return np.asarray(low & low[::-1])", "return np.asarray(low)", "wear/test_worn_side_volume.py"),
         ("identify/proposal.py", "math.pi * m * cos / cos_base", "math.pi * m * cos", "identify/test_proposal.py"),
