@@ -198,6 +198,7 @@ MUTATIONS = [
         ("wear/places.py", "HOLLOW = 10.0", "HOLLOW = 1e9", "wear/test_regions.py"),
         ("wear/places.py", "HOLLOW = 10.0", "HOLLOW = 3.0", "wear/test_regions.py"),
         ("diagnose/untold.py", "(share < rules().untold_flank)", "(share < 0.0)", "diagnose/test_untold.py"),
+        ("diagnose/untold.py", "np.where(worn, at_an_edge, ", "np.where(worn, False, ", "diagnose/test_untold.py"),
         ("diagnose/untold.py", "columns[on] @ told + known.off[at[1]]", "columns[on] @ told", "diagnose/test_untold.py"),
         ("diagnose/untold.py", "known.scatter / (lever @ free) * free", "known.scatter * free", "diagnose/test_untold.py"),
         ("diagnose/untold.py", "level_std[at], stds = np.linalg.norm(lever * scatter), scatter", "level_std[at], stds = known.scatter, 0.0 * scatter", "diagnose/test_untold.py"),

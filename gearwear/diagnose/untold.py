@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import fdtri
 
-from gearwear.arrays import Floats, Ints
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK
+from gearwear.design.surface import FILLET, FLANK
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.each_tooth import EachTooth
 from gearwear.diagnose.found import FoundEffect, Loop, UntoldFlanks
@@ -42,15 +42,22 @@ def with_untold(loop: Loop, cells: Cells) -> Loop:
     on, flanks = np.flatnonzero(flank), cells.grid.gear.teeth * len(Side)
     number = np.bincount(which[on], minlength=flanks)
     share = np.bincount(which[on], loop.use[on], minlength=flanks) / np.maximum(number, 1)
+    used = np.flatnonzero(loop.use & cells.seen)
+    told_half = np.bincount(which[used[np.isin(points.surface[used], (FLANK, FILLET))]], minlength=flanks) > 0
     worn = np.isin(np.arange(flanks) % len(Side), [side.index for side in loop.worn_sides])  # `made` is their doubt
-    hidden = np.flatnonzero((number > 0) & (share < rules().untold_flank) & ~worn)
+    seen = number > 0
+    by_most = np.array(
+        [told_half[half :: len(Side)].sum() > (seen & ~told_half)[half :: len(Side)].sum() for half in range(len(Side))]
+    )
+    at_an_edge = ~told_half & np.tile(by_most, cells.grid.gear.teeth)  # of a side that fillets tell, of all others as of this
+    hidden = np.flatnonzero(seen & np.where(worn, at_an_edge, (share < rules().untold_flank)))
     sound = np.flatnonzero((share > rules().sound_flank) & ~worn)
     own = [i for i, found in enumerate(loop.effects) if isinstance(found.candidate.effect, EachTooth)]
     if not (len(hidden) and len(sound) and own):
         return loop
     columns, amounts = _amounts(cells, loop, [loop.effects[i] for i in own])
     found = (columns * amounts[points.tooth]).sum(axis=1)
-    stands, used = _unexplained(cells, loop) + found - loop.form_of_all, np.flatnonzero(loop.use & cells.seen)
+    stands = _unexplained(cells, loop) + found - loop.form_of_all
     rows_of = {k: used[points.tooth[used] == k // len(Side)] for k in (*map(int, sound), *map(int, hidden))}
 
     def rest(k: int, target: Floats) -> tuple[Floats, Floats]:
@@ -76,14 +83,23 @@ def with_untold(loop: Loop, cells: Cells) -> Loop:
         if known.scatter > math.sqrt(float(fdtri(known.free, known.free, 1.0 - rules().significance))) * beside.scatter:
             known, stands, waves = beside, stands - waves, np.zeros_like(waves)
     raised, (level, level_std, shared) = np.zeros(len(flank)), np.zeros((3, cells.grid.gear.teeth, len(Side)))
-    effects, scatter = list(loop.effects), np.sqrt(np.mean(amounts[sound // len(Side)] ** 2, axis=0))
+    whole = np.unique(sound // len(Side))
+    both: Bools = np.asarray(told_half.reshape(-1, len(Side)).all(axis=1))[whole]
+    whole = whole[both] if both.any() else whole
+    effects, scatter = list(loop.effects), np.sqrt(np.mean(amounts[whole] ** 2, axis=0))
     for k in map(int, hidden):
         at, on = (k // len(Side), k % len(Side)), np.flatnonzero(flank & (which == k))
         told, free = rest(k, stands)
         lever = columns[on].mean(axis=0)
         if told.any():
+            if told_half[k]:
+                level_std[at], stds = known.scatter, np.abs(known.scatter / (lever @ free) * free)
+            else:
+                other = rows_of[k][(flank & (which == k + 1 - 2 * at[1]))[rows_of[k]]]
+                told, spread = _likely(amounts[at[0]], columns[other].mean(axis=0) if len(other) else 0.0 * lever, scatter)
+                level_std[at], stds = (np.sqrt(np.maximum(square, 0.0)) for square in (lever @ spread @ lever, np.diag(spread)))
             raised[on] = columns[on] @ told + known.off[at[1]]
-            level_std[at], shared[at], stds = known.scatter, known.off_std[at[1]], np.abs(known.scatter / (lever @ free) * free)
+            shared[at] = known.off_std[at[1]]
             told = told - known.more[at[1]]
         else:  # nothing of the tooth is told: it is as others are
             raised[on] = known.own[at[1]]
@@ -139,6 +155,16 @@ class _SoundFlanks:
         scatter = math.sqrt(float(((off - mean[half, 0]) ** 2).sum()) / free)
         off_std = np.where(enough, scatter / np.sqrt(np.maximum(number, 1)), math.sqrt(float(np.mean(off**2))))
         return cls(mean[:, 0], off_std, mean[:, 1], mean[:, 2:], scatter, free)
+
+
+def _likely(amounts: Floats, lever: Floats, scatter: Floats) -> tuple[Floats, Floats]:
+    """The amounts of a tooth, (e,), as likely as those of others make them, where only one flank of it tells ``lever · amounts``; and their covariance.
+
+    Of N(0, S), S the diagonal of `scatter` squared, given c·a: the mean is ``S c (c·a) / cᵀSc``, the covariance ``S − S c cᵀ S / cᵀSc``.
+    """
+    prior = np.diag(scatter**2)
+    pull = prior @ lever / max(float(lever @ prior @ lever), 1e-300)
+    return pull * float(lever @ amounts), prior - np.outer(pull, lever @ prior)
 
 
 def _told(found: FoundEffect, tooth: int, value: float, std: float) -> FoundEffect:

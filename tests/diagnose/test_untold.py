@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.pitch import EFFECT as PITCH
@@ -14,7 +15,7 @@ from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.wear.regions import find_wear
 from tests.placing.placing import designed
-from tests.synthetic import Effect, Patch, Recipe, make_scan
+from tests.synthetic import Effect, Patch, Recipe, SlidingWear, make_scan
 
 GEAR = designed()
 TOOTH, LEFT = 3, 1
@@ -154,3 +155,28 @@ def test_a_tooth_of_which_nothing_is_told_may_be_made_as_others_are():
     for (known,) in each_tooth(loop):
         scatter = float(np.sqrt(np.mean(np.array(known.value)[sound] ** 2)))
         assert known.value[TOOTH] == 0.0 and known.std[TOOTH] == pytest.approx(scatter, rel=0.02)
+
+
+def test_a_flank_at_the_edge_of_what_was_seen_is_made_as_others_are():
+    """All left flanks worn, and of the last tooth the left one seen near the tip alone: what it lacks there is its wear, and not a tooth thicker by what the
+    amounts of all others do not add up to."""
+    last, random = GEAR.teeth - 1, np.random.default_rng(5)
+    index, thickness = random.normal(0.0, 6.0, GEAR.teeth), random.normal(0.0, 10.0, GEAR.teeth)
+    thickness += 12.0 - thickness.mean()  # the sum of the others is far from 0
+    effects = (Effect("pitch", {"index_um": tuple(index)}), Effect("thickness_variation", {"thickness_um": tuple(thickness)}))
+    recipe = Recipe(jitter=1.0, noise_um=6.0, pose="none", wear=(SlidingWear(50.0, LEFT),), effects=effects)
+    scan = make_scan(recipe.of_size(20_000), 5)
+    labels, radius = scan.truth.labels, np.hypot(*scan.points[:, :2].T)
+    points = scan.points[(labels.tooth != last) | (labels.side != LEFT) | (radius > 42.0)]
+    located = locate(points, GEAR)
+    cells = bin_points(located, CellGrid.for_scan(GEAR, len(located)), clip=0.4)
+    worn = frozenset({Side.LEFT})
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), worn=worn)
+    for (known,), true in zip(each_tooth(loop), (index, thickness), strict=True):
+        off = np.array(known.value) - true
+        assert abs(off[last] - np.delete(off, last).mean()) < 2.0 * known.std[last] < 4.0 * true.std()
+        assert np.delete(off, last).std() < 2.0
+    wear = find_wear(cells.with_deviation(loop.residual_after - loop.untold.raised), loop.noise, worn, loop)
+    volumes = {(flank.tooth, flank.side): flank.volume_mm3 for flank in scan.truth.flanks}
+    (region,) = (region for region in wear.regions if region.tooth == last)
+    assert abs(region.volume - volumes[last, LEFT]) < 2.0 * region.volume_std
