@@ -80,10 +80,11 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     told = {region.tooth for region in wear.regions if region.side is side}
     worn, spared = len(told), sum(flank.side is side and flank.says and flank.tooth not in told for flank in wear.flanks)
     if worn and (loop is None or side in loop.worn_sides):
+        scanned = "" if wear.flanks_seen(side) == measured.gear.teeth else " that were seen"
         looks = (
             f"wear stands out on {worn} of {worn + spared} {side} flanks and none of them is"
             if spared
-            else f"all {side} flanks look worn and are not"
+            else f"all {side} flanks{scanned} look worn and are not"
         )
         borne_out = f"{looks} used as datum; the {side.opposite} (coast) flanks are assumed unworn"
     else:

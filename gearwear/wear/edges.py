@@ -30,6 +30,9 @@ LINES = 8
 """Places side by side of which one has no more lines of a scan than their mean has, less an eighth of a line."""
 FEW = 0.01
 """Share of the points of the place with most that may be strays."""
+UNSEEN = 0.1
+"""Share of a flank, in that of the flank seen best, below which it was not seen. Twice that of a tooth (`breakage`): where points are few, cells are
+merged, and a stray one of them counts for several."""
 
 
 def end_strip(gear: Gear) -> float:
@@ -114,6 +117,12 @@ def seen_places(count: Floats, fillet: int) -> Bools:
     columns = np.stack([_reached(side.sum(axis=0)) for side in flank])
     columns = np.hstack([np.repeat(columns[:, :1], fillet, axis=1), columns])
     return np.asarray(rows[:, :, None] & columns[:, None, :])
+
+
+def seen_sides(maps: SideMaps) -> Bools:
+    """Flanks of which more than hardly any cells were seen, (teeth, 2): of the others nothing is said, also where their side is worn throughout."""
+    seen = maps.seen[..., maps.fillet :].mean(axis=(2, 3))
+    return np.asarray((seen > 0.0) & (seen >= UNSEEN * seen.max()))
 
 
 def _reached(points: Floats) -> Bools:

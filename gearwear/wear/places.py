@@ -13,7 +13,7 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.robust import median_scale
 from gearwear.wear.burr import TipBurr, without_burrs
-from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
+from gearwear.wear.edges import at_ends_only, end_zone, seen_places, seen_sides, shared_edges, within_ends
 from gearwear.wear.own_level import at_own_level, standing_proud
 from gearwear.wear.ridge import PitchRidge, worn_level
 from gearwear.wear.volume import FEWEST_PLACEBOS
@@ -153,6 +153,7 @@ def standing_out(laid: LaidFlat, noise: float, loop: Loop | None, worn: frozense
     whole = by_level.copy()
     whole[:, [side.index for side in worn]] = True
     mask[whole, :, sheets.fillet :] = True
+    mask &= seen_sides(sheets)[:, :, None, None]  # a fillet that was seen alone says nothing of its flank
     on_gear = grid.toothed[:, None] & ~corners & ~gone
     known = seen_places(grid.sides(cells.count), sheets.fillet)
     beyond = ((on_gear & ~known & (filled < -limit)) * sheets.area)[..., sheets.fillet :]

@@ -23,6 +23,7 @@ from gearwear.placing.side_maps import SideMaps, rim
 from gearwear.threads import on_one_thread
 from gearwear.wear.alike import alike
 from gearwear.wear.burr import TipBurr
+from gearwear.wear.edges import seen_sides
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_sides, faint_wear, flank_limits, upper_limit
 from gearwear.wear.places import LaidFlat, lay_flat, standing_out
@@ -187,6 +188,10 @@ class Wear(Card):
         """Side that lost more: the one that carries; left where nothing is lost."""
         lost = {side: sum(region.volume for region in self.regions if region.side == side) for side in Side}
         return max(Side, key=lambda side: lost[side])
+
+    def flanks_seen(self, side: Side) -> int:
+        """How many flanks of a side were seen: no others have regions."""
+        return int(seen_sides(self.side_maps)[:, side.index].sum())
 
     @property
     def least_seen(self) -> tuple[float, float]:

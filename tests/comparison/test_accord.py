@@ -10,7 +10,7 @@ import pytest
 from gearwear.comparison.notes import in_accord, worn_notes
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
-from gearwear.report.words.verdict import doubts, verdict
+from gearwear.report.words.verdict import doubts, key_figures, verdict
 from tests.report.fake import changed, real_results
 
 
@@ -27,6 +27,23 @@ def test_a_side_that_is_worn_may_look_worn():
     results = changed(real_results(), "wear.found.regions", regions)
     results = changed(results, "measured", in_accord(measured, results.wear.found))
     assert "All left flanks look worn" in " ".join(doubts(results))
+
+
+def test_flanks_that_were_not_seen_are_not_said_to_look_worn():
+    """Nine of 27 teeth were scanned: "all left flanks look worn" stood under "teeth 1 and 11 to 27 were not seen"."""
+    measured = changed(left_out(Side.LEFT), "loop.worn_sides", frozenset({Side.LEFT}))
+    (region,) = real_results().wear.regions
+    wear = real_results().wear.found
+    count = wear.side_maps.count.copy()
+    count[4:] = 0.0
+    wear = replace(
+        wear, regions=tuple(replace(region, tooth=tooth) for tooth in range(4)), side_maps=replace(wear.side_maps, count=count),
+        flanks=tuple(replace(flank, depth=flank.depth if flank.tooth < 4 else np.nan) for flank in wear.flanks),
+    )  # fmt: skip
+    results = changed(changed(real_results(), "wear.found", wear), "measured", in_accord(measured, wear))
+    assert "All left flanks that were seen look worn" in " ".join(doubts(results))
+    assert "from all 4 left flanks that were seen" in verdict(results).replace("\u202f", " ")
+    assert key_figures(results)[0].note.startswith("from all 4 left flanks seen")
 
 
 def test_a_side_of_which_some_flanks_are_sound_is_not_said_to_look_worn_on_all():

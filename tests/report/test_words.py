@@ -97,7 +97,12 @@ def test_a_wave_of_the_table_goes_round_once_or_so_many_times(order, often):
 def test_flanks_in_few_words():
     one, two, three = fake_regions()
     assert which_flanks([one]) == "the left flank of tooth 2"
-    assert which_flanks([one, two, three]) == "3 left flanks" and which_flanks([one, two, three], 3) == "all 3 left flanks"
+    assert which_flanks([one, two, three]) == "3 left flanks"
+    three_seen = SimpleNamespace(flanks_seen=lambda side: 3, side_maps=SimpleNamespace(count=np.zeros((3, 2, 1, 1))))
+    twelve_teeth = SimpleNamespace(flanks_seen=lambda side: 3, side_maps=SimpleNamespace(count=np.zeros((12, 2, 1, 1))))
+    assert which_flanks([one, two, three], three_seen) == "all 3 left flanks"
+    assert which_flanks([one, two, three], twelve_teeth) == "all 3 left flanks that were seen"
+    assert which_flanks([one, two], twelve_teeth) == "2 left flanks"
     assert which_flanks([one, replace(two, side=Side.RIGHT)]) == "2 flanks of 2 teeth"
     assert which_flanks([one, replace(one, side=Side.RIGHT)]) == "2 flanks of 1 tooth"
 

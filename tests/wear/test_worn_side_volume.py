@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from gearwear.design.side import Side
-from gearwear.design.surface import flank_points, locate
+from gearwear.design.surface import FLANK, flank_points, locate
 from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.report.words.numbers import which_flanks
 from gearwear.wear.regions import find_wear
 from gearwear.wear.surface import SideSurface
 from tests.placing.placing import designed
@@ -63,6 +64,25 @@ def test_flanks_of_a_worn_side_that_do_not_stand_out_count_with_it():
         errors.append((wear.volume - lost.sum()) / wear.volume_std)
     assert len(errors) > 3 and alone < 0.5 * GEAR.teeth * len(errors)
     assert np.abs(errors).max() < 2.5
+
+
+def test_flanks_that_were_not_seen_have_no_wear():
+    """Half of the teeth, and of one more one place of its flank: nothing is said of those, though their side is worn throughout."""
+    cells, lost = worn_side(np.random.default_rng(2), points=12, deepest=2.0 * DEEPEST)
+    teeth = GEAR.teeth // 2
+    points, hidden = cells.points, cells.points.tooth >= teeth
+    there = (points.tooth == teeth) & (points.surface == FLANK) & (points.side == Side.LEFT)
+    hidden[np.argmax(there * cells.count)] = False
+    half = cells.without(hidden)
+    wear = find_wear(half, NOISE, WORN)
+    seen = {flank.tooth for flank in wear.flanks if flank.side is Side.LEFT and flank.seen > 0.1}
+    assert seen == set(range(teeth)) and any(flank.tooth == teeth and flank.seen > 0.0 for flank in wear.flanks)
+    assert sorted(region.tooth for region in wear.regions) == list(range(teeth)) and wear.flanks_seen(Side.LEFT) == teeth
+    assert min(region.max_depth for region in wear.regions) > 0.0
+    assert not wear.mask[teeth:].any() and not wear.depth[teeth:].any()
+    assert abs(wear.volume - lost[:teeth].sum()) < 3.0 * wear.volume_std
+    assert which_flanks(wear.regions, wear) == f"all {teeth} left flanks that were seen"
+    assert which_flanks(wear.regions[:-1], wear) == f"{teeth - 1} left flanks"
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def _wear_words(results: Results) -> str:
     unit, of_what = ("mm²", "of the section") if results.planar else ("mm³", "of metal")
     text = ["no region of wear stands out of the scatter of this scan"]
     if worn.regions:
-        which = which_flanks(worn.regions, results.gear.teeth)
+        which = which_flanks(worn.regions, worn)
         text = [f"in all {with_std(worn.volume, worn.volume_std, unit)} {of_what} from {which}"]
         if results.effects:
             without = with_std(before.volume, before.volume_std, unit)

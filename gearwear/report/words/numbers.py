@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import MISSING, SPACE, counted, listed, number, pretty_unit, significant, with_std
 from gearwear.diagnose.effects.base import ParameterEstimate
-from gearwear.wear.regions import WearRegion
+from gearwear.wear.regions import Wear, WearRegion
 
 
 def thickness_place(gear: Gear) -> str:
@@ -66,15 +66,19 @@ def row(values: Iterable[float], digits: int) -> str:
     return ", ".join(number(value, digits) for value in values)
 
 
-def which_flanks(regions: Iterable[WearRegion], teeth: int | None = None) -> str:
-    """Which flanks some regions of wear lie on, in few words: "the left flank of tooth 2", "all 3 left flanks"."""
+def which_flanks(regions: Iterable[WearRegion], wear: Wear | None = None) -> str:
+    """Which flanks some regions of wear lie on, in few words: "the left flank of tooth 2", "all 3 left flanks"; of a scan of some teeth alone
+    "all 3 left flanks that were seen". `wear` is all that was found, None for "3 left flanks"."""
     flanks = {(region.tooth + 1, region.side) for region in regions}
     sides = {side for _, side in flanks}
     if len(flanks) == 1:
         ((tooth, side),) = flanks
         return f"the {side} flank of tooth {tooth}"
     if len(sides) == 1:
-        return f"{'all ' if len(flanks) == teeth else ''}{len(flanks)} {sides.pop()} flanks"
+        side = sides.pop()
+        seen, teeth = (0, 0) if wear is None else (wear.flanks_seen(side), len(wear.side_maps.count))
+        every, scanned = len(flanks) == seen, " that were seen" if seen < teeth else ""
+        return f"all {len(flanks)} {side} flanks{scanned}" if every else f"{len(flanks)} {side} flanks"
     numbers = {tooth for tooth, _ in flanks}
     return f"{len(flanks)} flanks of {counted(len(numbers), 'tooth', 'teeth')}"
 

@@ -101,7 +101,7 @@ def _wear_found(results: Results) -> str:
     wear, worst = results.wear, results.wear.deepest
     assert worst is not None
     place, depth = which_flanks([worst]), deepest_range(results, worst) or _depth(worst.max_depth)
-    where = which_flanks(wear.regions, results.gear.teeth)
+    where = which_flanks(wear.regions, wear.found)
     text = f"{_lost(results)} is gone from {where}"
     if wear.volume < NORMAL_95 * wear.volume_std:
         text = (
@@ -462,7 +462,8 @@ def _where_lost(results: Results) -> str:
     if open_ and not _wide(results):
         beside = f"{_limits(results)} are not excluded"
     worn_thin = f"up to {up_to} if worn evenly to the measured thinning" if (up_to := _up_to(results)) else ""
-    return "; ".join(filter(None, (f"from {which_flanks(regions, results.gear.teeth)}", beside, worn_thin)))
+    where = which_flanks(regions, results.wear.found).replace("that were seen", "seen")  # room is short beside a number
+    return "; ".join(filter(None, (f"from {where}", beside, worn_thin)))
 
 
 def _contact_figures(results: Results) -> list[KeyFigure]:
