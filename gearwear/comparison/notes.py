@@ -19,7 +19,7 @@ from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FILLET, FLANK, TIP
 from gearwear.diagnose.found import Loop
 from gearwear.loaded.study import load_left_out
-from gearwear.placing.datum import LOW, Datum, bends_otherwise
+from gearwear.placing.datum import LOW, Datum, bends_otherwise, taken_for_unworn
 from gearwear.wear.regions import UNIT, Wear
 from gearwear.wear_law.study import Ahead
 
@@ -70,14 +70,16 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells, or
     where what the loop found leaves none."""
     datum, loop = measured.placed.registration.datum, measured.loop
-    if datum.low and (before or (loop is not None and (measured.faces or not _still_low(measured, loop)))):
+    both = loop is not None and len(loop.worn_sides) == 2  # `worn_notes` says what that leaves open
+    if datum.low and (before or both or (loop is not None and (measured.faces or not _still_low(measured, loop)))):
         return _with_datum(measured, replace(datum, low=0.0))
     side = datum.worn_side
     # The other side is no datum either then: `worn_notes` says so.
-    said = measured.faces or (loop is not None and len(loop.worn_sides) == 2)
+    said = measured.faces or both
     if side is None:
         return measured
     told = {region.tooth for region in wear.regions if region.side is side}
+    others = len({region.tooth for region in wear.regions if region.side is not side})
     worn, spared = len(told), sum(flank.side is side and flank.says and flank.tooth not in told for flank in wear.flanks)
     if worn and (loop is None or side in loop.worn_sides):
         scanned = "" if wear.flanks_seen(side) == measured.gear.teeth else " that were seen"
@@ -86,9 +88,9 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
             if spared
             else f"all {side} flanks{scanned} look worn and are not"
         )
-        borne_out = f"{looks} used as datum; the {side.opposite} (coast) flanks are assumed unworn"
+        borne_out = f"{looks} used as datum; {taken_for_unworn(side.opposite, others)}"
     else:
-        borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them")
+        borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them", others)
     return _with_datum(measured, replace(datum, borne_out="" if said else borne_out))
 
 

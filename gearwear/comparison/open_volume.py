@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import cached_property
 
 from gearwear.comparison.measured_gear import MeasuredGear
@@ -16,6 +17,38 @@ from gearwear.wear.regions import Wear, WearRegion
 
 HOLLOW = 2.0
 """How deep a hollow is in its mean depth."""
+
+
+class Open(StrEnum):
+    """What leaves the worn volume open, as the report has it."""
+
+    SIDES = "the scan does not decide which sides are worn throughout"
+    VIEWS = "views that were put together in one file and lie apart on some teeth: what is missing there may be that"
+    PITS = "pits or grooves on other flanks, too few there to be told from strays"
+    UNSEEN = "worn flanks of which no tooth was seen whole: what is missing where nothing was seen is not in the value"
+    RIDGE = "worn flanks that stand proud of the design at the pitch line: cut thicker, or raised there by plastic flow, the scan does not tell"
+    FAINT = "wear shallower than the limits of detection of its flanks"
+    UNSURE = "flanks of sides that look worn throughout: how high they stood as made is not known well enough"
+    FORM = "a form that all teeth have and no effect explains: cut or worn, the scan does not tell"
+    THIN = "teeth thinner than drawn: cut so, or worn evenly, the scan does not tell"
+    EVEN = "the same loss all over the flanks of a worn side: worn evenly, or cut thinner, the scan does not tell"
+    TOLERANCE = "tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it"
+
+
+@dataclass(frozen=True, slots=True)
+class OpenPart:
+    """One of these.
+
+    Parameters
+    ----------
+    what : Open
+    below, above : float
+        How much less and more the volume may be by it, mm³.
+    """
+
+    what: Open
+    below: float
+    above: float
 
 
 @dataclass(frozen=True)
@@ -50,56 +83,56 @@ class OpenVolume:
 
     @cached_property
     def of_such_teeth(self) -> tuple[float, float, str] | None:
-        """Within what limits the worn volume lies, mm³, its own 95 % interval with them, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 %
-        interval, wear too faint to be found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all teeth that nothing explains, teeth thinner than drawn, and what may be thicker teeth or a ridge at the pitch line.
-        None where nothing does."""
-        low = high = self.found.volume
-        causes = []
+        """Within what limits the worn volume lies, mm³, its own 95 % interval with them, and what leaves it open (`causes`). None where nothing does."""
+        if not self.causes:
+            return None
+        value, own = self.found.volume, NORMAL_95 * self.found.volume_std
+        low = value - max(sum(cause.below for cause in self.causes), own)
+        high = value + max(sum(cause.above for cause in self.causes), own)
+        return max(low, 0.0), high, "; ".join(str(cause.what) for cause in self.causes)
+
+    @cached_property
+    def causes(self) -> tuple[OpenPart, ...]:
+        """What leaves the volume open: a stated tolerance, an even loss; a scan that does not decide which sides are worn throughout, what each answer would
+        be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 % interval, wear too faint to be
+        found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all
+        teeth that nothing explains, teeth thinner than drawn, and what may be thicker teeth or a ridge at the pitch line."""
+        value, std = self.found.volume, self.found.volume_std
+        causes = list[OpenPart]()
+        below = 0.0
         if self.undecided:
-            low = min(low, *(value - NORMAL_95 * std for value, std in self.undecided))
-            high = max(high, *(value + NORMAL_95 * std for value, std in self.undecided))
-            causes.append("the scan does not decide which sides are worn throughout")
-        if (layered := self.layered) > 0.0:
-            low = min(low, self.found.volume - layered)
-            causes.append(
-                "views that were put together in one file and lie apart on some teeth: what is missing there may be that"
-            )
+            below = max(0.0, *(value - other + NORMAL_95 * its for other, its in self.undecided))
+            above = max(0.0, *(other + NORMAL_95 * its - value for other, its in self.undecided))
+            causes.append(OpenPart(Open.SIDES, below, above))
+        if self.layered > 0.0:  # another answer, and not one beside the others
+            causes.append(OpenPart(Open.VIEWS, max(self.layered - below, 0.0), 0.0))
         if self.found.hidden_pits > 0.0:
-            high += self.found.hidden_pits
-            causes.append("pits or grooves on other flanks, too few there to be told from strays")
-        if self.found.unseen > self.found.volume_std:
-            high += self.found.unseen
-            causes.append(
-                "worn flanks of which no tooth was seen whole: what is missing where nothing was seen is not in the value"
-            )
+            causes.append(OpenPart(Open.PITS, 0.0, self.found.hidden_pits))
+        if self.found.unseen > std:
+            causes.append(OpenPart(Open.UNSEEN, 0.0, self.found.unseen))
         if any(self.ridge_or_thick):
-            low, high = low - self.ridge_or_thick[0], high + self.ridge_or_thick[1]
-            causes.append(
-                "worn flanks that stand proud of the design at the pitch line: cut thicker, or raised there by plastic flow, the scan does not tell"
-            )
-        if (faint := self.too_faint) > 0.0:
-            high += faint
-            causes.append("wear shallower than the limits of detection of its flanks")
-        if (unsure := self.unsure_or_worn) > 0.0:
-            high += unsure
-            causes.append("flanks of sides that look worn throughout: how high they stood as made is not known well enough")
-        if (form := self.form_or_wear) > 0.0:
-            high += form
-            causes.append("a form that all teeth have and no effect explains: cut or worn, the scan does not tell")
-        if (thin := self.thin_or_worn) > 0.0:
-            high += thin
-            causes.append("teeth thinner than drawn: cut so, or worn evenly, the scan does not tell")
-        if (even := self.even_or_thin) > 0.0:
-            low -= even
-            causes.append("the same loss all over the flanks of a worn side: worn evenly, or cut thinner, the scan does not tell")
+            causes.append(OpenPart(Open.RIDGE, *self.ridge_or_thick))
+        for why, more in (
+            (Open.FAINT, self.too_faint), (Open.UNSURE, self.unsure_or_worn), (Open.FORM, self.form_or_wear), (Open.THIN, self.thin_or_worn),
+        ):  # fmt: skip
+            if more > 0.0:
+                causes.append(OpenPart(why, 0.0, more))
+        if self.even_or_thin > 0.0:
+            causes.append(OpenPart(Open.EVEN, self.even_or_thin, 0.0))
         open_ = even_loss(self.measured, self.found)
         if open_ is not None and not self.unworn_seen:
-            low, high = low - open_, high + open_
-            causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
-        own = NORMAL_95 * self.found.volume_std
-        low, high = min(low, self.found.volume - own), max(high, self.found.volume + own)
-        return (max(low, 0.0), high, "; ".join(causes)) if causes else None
+            causes.append(OpenPart(Open.TOLERANCE, open_, open_))
+        return tuple(causes)
+
+    @cached_property
+    def widest(self) -> Open | None:
+        """What leaves most of the volume open; wear too faint to be found only where nothing else does. None where the limits are no more than its own
+        95 % interval."""
+        limits, own = self.of_such_teeth, NORMAL_95 * self.found.volume_std * (1.0 + 1e-9)
+        if limits is None or max(self.found.volume - limits[0], limits[1] - self.found.volume) <= own:
+            return None
+        open_ = [cause for cause in self.causes if cause.below + cause.above > 0.0]
+        return max(open_, key=lambda cause: (cause.what is not Open.FAINT, cause.below + cause.above)).what
 
     @property
     def layered(self) -> float:

@@ -135,11 +135,17 @@ def median_bend(profile: Floats) -> float:
     return float(np.sqrt(np.mean((finite - np.median(finite)) ** 2)))
 
 
-def bends_otherwise(side: Side, seen: str = "") -> str:
-    """That a side is left out for its shape, what was `seen` of wear on it, and what that assumes."""
+def bends_otherwise(side: Side, seen: str = "", others: int = 0) -> str:
+    """That a side is left out for its shape, what was `seen` of wear on it and on how many `others` opposite, and what that assumes."""
     how = f"bend otherwise than the {side.opposite} ones" + ("" if seen else ", as worn ones do,")
-    seen = f"{seen}, and the" if seen else "the"
-    return f"the {side} flanks {how} and are not used as datum; {seen} {side.opposite} (coast) flanks are assumed unworn"
+    seen = f"{seen}, and " if seen else ""
+    return f"the {side} flanks {how} and are not used as datum; {seen}{taken_for_unworn(side.opposite, others)}"
+
+
+def taken_for_unworn(side: Side, worn: int = 0) -> str:
+    """That the flanks of a side are assumed unworn, but for so many on which wear was found."""
+    but = f", but for {worn} on which wear stands out," if worn else ""
+    return f"the {side} (coast) flanks{but} are assumed unworn"
 
 
 def _low(cells: Cells, noise: float, ignore: frozenset[int]) -> float | None:

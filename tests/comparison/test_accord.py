@@ -77,6 +77,31 @@ def test_a_side_without_wear_is_not_said_to_look_worn(side):
     assert "Another note." in said
 
 
+@pytest.mark.parametrize("throughout", [frozenset(), frozenset({Side.RIGHT})])
+def test_flanks_with_wear_are_not_among_those_assumed_unworn(throughout):
+    """The right side was left out as datum; of the left flanks, on which wear was found, "the left flanks are assumed unworn" was said."""
+    (region,) = real_results().wear.regions
+    assert region.side is Side.LEFT
+    wear = replace(
+        real_results().wear.found,
+        regions=(region, replace(region, tooth=5), *([replace(region, side=Side.RIGHT)] * len(throughout))),
+    )
+    measured = in_accord(changed(left_out(Side.RIGHT), "loop.worn_sides", throughout), wear)
+    said = " ".join(doubts(changed(changed(real_results(), "wear.found", wear), "measured", measured)))
+    assert "the left (coast) flanks, but for 2 on which wear stands out, are assumed unworn" in said
+
+
+def test_both_sides_worn_are_not_said_to_be_one():
+    """Where both sides look worn it is said what that leaves open, and not that one of them may be."""
+    measured = changed(real_results().measured, "placed.registration.datum.low", 0.008)
+    measured = changed(measured, "loop.worn_sides", frozenset(Side))
+    flank = measured.first.points.surface == FLANK
+    after = measured.loop.residual_after - np.where(flank, 0.008, 0.0)
+    measured = in_accord(changed(measured, "loop.residual_after", after), real_results().wear.found)
+    assert not any("one side and a rotation" in note for note in measured.placed.registration.notes)
+    assert any("thinner teeth" in note for note in worn_notes(measured, real_results().wear.found))
+
+
 def test_no_side_left_out_no_word_of_it():
     measured = real_results().measured
     assert in_accord(measured, real_results().wear.found) is measured

@@ -8,25 +8,25 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from gearwear.comparison.open_volume import OpenVolume
+from gearwear.comparison.open_volume import Open, OpenVolume
 from gearwear.design.side import Side
 
 TEETH, ROWS, ROW = 20, 10, 2.0
 """A row of a flank is 2 mm², so all flanks of a side are 20 · 10 · 2 = 400 mm²."""
 
 
-def opened(undecided, volume=30.0, std=0.5):
+def opened(undecided, volume=30.0, std=0.5, **found):
     """Volume of a gear without a loop, with other answers (volume, std) that are not excluded."""
     grid = SimpleNamespace(toothed=np.ones(ROWS, dtype=bool), gear=SimpleNamespace(teeth=TEETH))
     gear = SimpleNamespace(spec=SimpleNamespace(tolerance=SimpleNamespace(thickness=None)))
     measured = SimpleNamespace(
         cells=SimpleNamespace(grid=grid), gear=gear, loop=None, layered=np.zeros(TEETH, dtype=bool), worn_sides=frozenset()
     )
-    found = SimpleNamespace(
+    known = SimpleNamespace(
         volume=volume, volume_std=std, regions=(), hidden_pits=0.0, unseen=0.0, level_open=(0.0, 0.0), faint=0.0, unsure=0.0,
         side_maps=SimpleNamespace(flank_row=ROW),
     )  # fmt: skip
-    return OpenVolume(measured, found, tuple(undecided))
+    return OpenVolume(measured, SimpleNamespace(**{**vars(known), **found}), tuple(undecided))
 
 
 def test_evenly_over_a_side_it_is_the_range_over_its_area():
@@ -49,3 +49,28 @@ def test_the_deepest_place_has_up_to_twice_as_much():
     assert (low, high) == (pytest.approx(0.09 - 0.04 - own, rel=1e-3), pytest.approx(0.09 + 0.10 + own, rel=1e-3))
     unknown = SimpleNamespace(side=Side.LEFT, max_depth=0.01, max_depth_std=math.nan)
     assert opened([(22.0, 0.0), (50.0, 0.0)]).depth_limits(unknown) == (0.0, pytest.approx(0.11))
+
+
+@pytest.mark.parametrize(
+    ("undecided", "found", "range_", "widest"),
+    [
+        ([], {}, None, None),
+        ([(22.0 + 1.96, 1.0)], {}, (22.0, 30.98), Open.SIDES),
+        ([(22.0 + 1.96, 1.0)], {"unseen": 20.0}, (22.0, 50.0), Open.UNSEEN),
+        ([(22.0 + 1.96, 1.0)], {"unseen": 3.0}, (22.0, 33.0), Open.SIDES),
+        ([], {"hidden_pits": 0.1}, (29.02, 30.98), None),  # within its own 95 %
+        ([], {"hidden_pits": 5.0}, (29.02, 35.0), Open.PITS),
+        ([], {"faint": 5.0}, (29.02, 35.0), Open.FAINT),
+        ([], {"faint": 5.0, "hidden_pits": 2.0}, (29.02, 37.0), Open.PITS),  # of faint wear only where nothing else is open
+        ([], {"level_open": (0.02, 0.01)}, (22.0, 34.0), Open.RIDGE),
+    ],
+)
+def test_what_leaves_most_open_is_what_is_asked(undecided, found, range_, widest):
+    """30 ± 0.5 mm³ over flanks of 400 mm²; each part adds to its own end, and the 95 % interval, 29.02 to 30.98 mm³, is in it."""
+    open_ = opened(undecided, **found)
+    assert open_.widest is widest
+    if range_ is None:
+        assert open_.of_such_teeth is None
+    else:
+        assert open_.of_such_teeth[:2] == pytest.approx(range_, abs=1e-4)
+        assert open_.of_such_teeth[2].split("; ") == [str(part.what) for part in open_.causes]

@@ -15,6 +15,7 @@ import pytest
 from rich.console import Console
 
 from gearwear.commands import progress
+from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report.words.terminal import ASCII, lines, print_summary
@@ -106,6 +107,57 @@ def test_a_range_hardly_wider_than_the_deviation_says_comes_after_it():
     results = changed(fake_results(), "wear.undecided", ((89.8, 0.5),))
     said = verdict(results).replace("\u202f", " ").replace("\u00a0", " ")
     assert said.startswith("90.80 ± 0.51 mm³ of metal is gone") and "it may be 89 to 92 mm³" in said
+
+
+OPENED = {
+    "worn flanks not seen whole": (lambda r: changed(r, "wear.found.unseen", 50.0), "90 to 141", "where it was seen it is"),
+    "cut thinner within the tolerance, or worn evenly": (lambda r: worn_within(r, 0.2), "36 to 145", "the likeliest is"),
+    "pits on other flanks": (lambda r: changed(r, "wear.found.hidden_pits", 50.0), "90 to 141", "the likeliest is"),
+}
+
+
+def worn_within(results, tolerance):
+    """With a tolerance of the tooth thickness, mm, and the left side worn throughout."""
+    spec = replace(results.gear.spec, tolerance=replace(results.gear.spec.tolerance, thickness=tolerance))
+    results = changed(results, "measured.root.gear", Gear.from_spec(spec))
+    return changed(results, "measured.loop.worn_sides", frozenset({Side.LEFT}))
+
+
+@pytest.mark.parametrize("reason", OPENED)
+def test_whatever_opens_the_range_is_told_with_it(reason):
+    """On flanks of 3 × 96.4 mm² a tolerance of 0.2 mm of arc is 0.2 mm · cos 20° · 289.2 mm² = 54 mm³; the value alone, 90.80 ± 0.51 mm³, would
+    be read as how well it is known."""
+    put_in, range_, likeliest = OPENED[reason]
+    results = put_in(fake_results())
+    low, high, _ = results.volume_range
+    assert [low, high] == pytest.approx([float(x) for x in range_.split(" to ")], abs=0.5)
+    said, figure = verdict(results).replace("\u202f", " ").replace("\u00a0", " "), key_figures(results)[0]
+    assert said.startswith(f"{range_} mm³ of metal is gone from 3 left flanks")
+    assert f"the scan does not decide: {likeliest} 90.80 ± 0.51 mm³" in said
+    assert figure.value.replace("\u202f", " ") == f"{range_} mm³" and reason in figure.note
+
+
+def test_limits_down_to_nothing_are_no_nought_where_the_deepest_place_is_surely_low():
+    """Nothing worn throughout would be 0 ± 1 mm³: "0 to 92 mm³ is gone; deepest, by 36 to 92 µm" said both that nothing is gone and that it is."""
+    results = changed(fake_results(), "wear.undecided", ((0.0, 1.0),))
+    assert results.volume_range[0] == 0.0
+    worst = results.wear.deepest
+    for depth, none in ((worst.max_depth, False), (0.01, True)):
+        regions = tuple(replace(one, max_depth=min(one.max_depth, depth), max_depth_std=0.001) for one in results.wear.regions)
+        opened = changed(results, "wear.found.regions", regions)
+        assert (opened.open_volume.depth_limits(opened.wear.deepest)[0] <= 0.0) == none
+        said = verdict(opened).replace("\u202f", " ").replace("\u00a0", " ")
+        assert key_figures(opened)[0].value.replace("\u202f", " ") == "up to 92 mm³"
+        assert said.startswith("Up to 92 mm³ of metal is gone from 3 left flanks") != none
+        assert said.startswith("3 left flanks look worn; up to 92 mm³ of metal is missing there, which may be none") == none
+
+
+def test_what_faint_wear_may_come_to_is_told_of_a_gear_without_any():
+    results = changed(changed(fake_results(), "wear.found.regions", ()), "wear.found.volume", 0.0)
+    results = changed(changed(results, "wear.found.volume_std", 0.0), "wear.found.faint", 3.1)
+    assert results.volume_range[1] == pytest.approx(3.1)
+    for text in (verdict(results), key_figures(results)[0].note):
+        assert "with wear too shallow to be found it may be up to 3.1 mm³" in text.replace("\u202f", " ")
 
 
 def test_without_a_region_the_limits_stand_beside_the_nought():

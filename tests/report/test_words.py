@@ -25,7 +25,16 @@ from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
 from gearwear.report.words.numbers import quantity, which_flanks
-from gearwear.report.words.verdict import deepest_range, doubts, key_figures, loop_words, thinnest_words, verdict, wrong_design
+from gearwear.report.words.verdict import (
+    alike_words,
+    deepest_range,
+    doubts,
+    key_figures,
+    loop_words,
+    thinnest_words,
+    verdict,
+    wrong_design,
+)
 from gearwear.wear.limits import FlankLimit
 from gearwear.wear.tooth_summary import ThinnestTooth
 from tests.report.fake import bare_results, changed, fake_regions, fake_results, fake_thickness
@@ -161,8 +170,8 @@ def test_flanks_that_say_nothing_are_told():
     limits = [FlankLimit(tooth, side, 0.008, 9.0, 1.0) for tooth in range(3) for side in Side]
     plain = changed(bare_results(), "wear.found.flanks", tuple(limits))
     thin = changed(plain, "wear.found.flanks", (*limits[1:], replace(limits[0], depth=math.nan)))
-    assert spoken(verdict(plain)).endswith("wear of 8.0 µm would have shown on every flank.")
-    assert spoken(verdict(thin)).endswith("on all but 1 flank, seen too thinly to say.")
+    assert "; wear of 8.0 µm would have shown on every flank; with wear too shallow" in spoken(verdict(plain))
+    assert "on all but 1 flank, seen too thinly to say; with wear too shallow" in spoken(verdict(thin))
 
 
 def seen_only(results, shares):
@@ -276,6 +285,16 @@ def test_sizes_that_are_known_only_together_are_said_so(value, known):
     assert (f"sizes of coating and scale are correlated by {number(value, 2)}: their {known} is known" in text) == (
         known is not None
     )
+
+
+def test_sizes_of_effects_that_are_not_named_are_not_said_to_be_alike():
+    """Forms that the drawing leaves open are taken out without a name: "root form and tip relief" would be news to the reader."""
+    pairs = (("root_form", "tip_relief"), ("coating", "root_form"), ("coating", "scale"))
+    found = tuple(Correlation(pair, ("level_um", "amount_um"), -0.95) for pair in pairs)
+    results = changed(fake_results(), "measured.loop.correlations", found)
+    (said,) = alike_words(results)
+    assert said.startswith("the sizes of coating and scale")
+    assert "root form" not in loop_words(results)
 
 
 def test_a_loop_that_named_nothing_claims_no_gain():

@@ -33,6 +33,7 @@ from gearwear.report.words.effects import fitted_words, found_words
 from gearwear.report.words.loaded import HEAD as HEAD_LOADED
 from gearwear.report.words.loaded import TEXT as TEXT_LOADED
 from gearwear.report.words.loaded import load_words, loaded_notes, loaded_rows
+from gearwear.report.words.lost import lost_words, open_words
 from gearwear.report.words.numbers import effect_title, row, thickness_place, which_flanks
 from gearwear.report.words.running import CAPTION as CAPTION_RUNNING
 from gearwear.report.words.running import HEAD as HEAD_RUNNING
@@ -65,11 +66,11 @@ def wear(results: Results, arrays: ReportArrays, scale: ColourScale) -> Section:
 
 def _wear_words(results: Results) -> str:
     worn, before, boolean = results.wear.found, results.wear.before_loop, results.wear.boolean
-    unit, of_what = ("mm²", "of the section") if results.planar else ("mm³", "of metal")
+    unit = "mm²" if results.planar else "mm³"
     text = ["no region of wear stands out of the scatter of this scan"]
     if worn.regions:
         which = which_flanks(worn.regions, worn)
-        text = [f"in all {with_std(worn.volume, worn.volume_std, unit)} {of_what} from {which}"]
+        text = [f"in all {lost_words(results)} from {which}", *filter(None, [open_words(results)])]
         if results.effects:
             without = with_std(before.volume, before.volume_std, unit)
             text.append(f"without taking the effects of scan and manufacture out first it would have been {without}")

@@ -138,7 +138,7 @@ def _found(results: Results, where: bool, correlated: bool, most: int, named: bo
             else [f"{len(rest)} more"]
         )
         text = sentence(f"besides wear: {listed([*said, *more])}")
-        text = " ".join([text, *(map(sentence, alike_words(loop)) if correlated else ())])
+        text = " ".join([text, *(map(sentence, alike_words(results)) if correlated else ())])
     return f"{sentence(unexplained_words(loop, results.gear, where))} {text}" if loop.patterns else text
 
 

@@ -11,7 +11,6 @@ from gearwear.comparison.results import Results
 from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import (
-    NORMAL_95,
     SPACE,
     as_drawn,
     counted,
@@ -26,6 +25,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.refusal import SeenRadii
 from gearwear.report.words.effects import found_words
+from gearwear.report.words.lost import is_open, lost_words, may_be_none, open_words, size_words, where_lost, worn_so_thin
 from gearwear.report.words.numbers import effect_title, thickness_place, which_flanks
 from gearwear.scan.types import Scan
 from gearwear.wear.breakage import MISSING_TOOTH
@@ -102,11 +102,9 @@ def _wear_found(results: Results) -> str:
     assert worst is not None
     place, depth = which_flanks([worst]), deepest_range(results, worst) or _depth(worst.max_depth)
     where = which_flanks(wear.regions, wear.found)
-    text = f"{_lost(results)} is gone from {where}"
-    if wear.volume < NORMAL_95 * wear.volume_std:
-        text = (
-            f"{where} {'looks' if len(wear.regions) == 1 else 'look'} worn; {_lost(results)} is missing there, which may be none"
-        )
+    text = f"{lost_words(results)} is gone from {where}"
+    if may_be_none(results):
+        text = f"{where} {'looks' if len(wear.regions) == 1 else 'look'} worn; {lost_words(results)} is missing there, which may be none"
     text += f", up to {depth} deep" if len(wear.regions) == 1 else f"; deepest, by {depth}, on {place}"
     tooth = wear.thinnest
     if tooth is not None and tooth.high < tooth.nominal:  # else it may as well be as designed
@@ -116,117 +114,22 @@ def _wear_found(results: Results) -> str:
             f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / tooth.nominal, 2)}{SPACE}%)"
             f" thinner than designed {thickness_place(results.gear)}"
         )
-    if _open(results):
-        text += f"; {_may_be(results)}"
-    elif too_faint := _too_faint(results):
-        text += f"; {too_faint}"
-    return text + _were_they_worn_so_thin(results)
-
-
-def _were_they_worn_so_thin(results: Results) -> str:
-    """What the volume may come to where the teeth are as thin as the design has them from a gear that was measured; "" where a drawing says how thin."""
-    up_to = _up_to(results)
-    return (
-        f"; were the teeth not cut as thin as they were measured but worn evenly to that, it would be up to {up_to}"
-        if up_to
-        else ""
-    )
-
-
-def _up_to(results: Results) -> str:
-    """That volume; "" as above."""
-    limits = results.volume_range
-    return "" if limits is None or results.open_volume.measured_thinning == 0.0 else _volume(limits[1], results)
-
-
-def _volume(value: float, results: Results) -> str:
-    return f"{significant(value, 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
-
-
-def _too_faint(results: Results) -> str:
-    """What the volume may come to with wear that does not stand out; "" where that is within what is known of it."""
-    if results.open_volume.too_faint <= 0.0:
-        return ""
-    limits = results.open_volume.of_such_teeth
-    assert limits is not None
-    return f"with wear too shallow to be found it may be up to {_volume(limits[1], results)}"
-
-
-def _open(results: Results) -> bool:
-    """Whether the scan leaves open if what all flanks of a side have in common is wear."""
-    even = (
-        results.open_volume.thin_or_worn > 0.0
-        or results.open_volume.even_or_thin > 0.0
-        or results.open_volume.unsure_or_worn > 0.0
-    )
-    open_ = results.open_volume
-    return bool(results.wear.undecided) or open_.form_or_wear > 0.0 or even or open_.layered > 0.0 or any(open_.ridge_or_thick)
-
-
-def _may_be(results: Results) -> str:
-    """What the scan does not decide of the volume, and what it may be as well; where that leads, what it likeliest is."""
-    question = "whether flanks are worn throughout or were made so"
-    if results.open_volume.layered > 0.0:
-        question = "how much of that is views that lie apart"
-    elif not results.wear.undecided and results.open_volume.form_or_wear <= 0.0:
-        question = "whether the teeth were cut thinner than drawn or are worn evenly"
-        if results.open_volume.unsure_or_worn > 0.0:
-            question = "how much the flanks that look worn have lost"
-        elif any(results.open_volume.ridge_or_thick):
-            question = "how high the worn flanks stood as they were made"
-    told = f"it may be {_limits(results)}"
-    if results.wear.regions and _wide(results):
-        told = f"the likeliest is {_with_own_std(results)}"
-    return f"{question} the scan does not decide: {told}"
-
-
-def _limits(results: Results) -> str:
-    """Between what the volume lies where more than its standard deviation leaves it open; its own 95 % is in it at either end."""
-    limits = _range(results)
-    assert limits is not None
-    return f"{significant(limits[0], 2)} to {_volume(limits[1], results)}"
-
-
-def _range(results: Results) -> tuple[float, float, str] | None:
-    """The limits of the volume; beside wear that stands out those of teeth as thin as the design has them, which leave it its own place in the words."""
-    return results.open_volume.of_such_teeth if results.wear.regions else results.volume_range
-
-
-def _lost(results: Results) -> str:
-    return f"{_size(results)} {'of the section' if results.planar else 'of metal'}"
-
-
-def _size(results: Results) -> str:
-    """The volume with its standard deviation; between what it lies, where that is much more than its own 95 %."""
-    return _limits(results) if _wide(results) else _with_own_std(results)
-
-
-def _with_own_std(results: Results) -> str:
-    return with_std(results.wear.volume, results.wear.volume_std, "mm²" if results.planar else "mm³")
-
-
-def _wide(results: Results) -> bool:
-    """Whether what is open of the volume is so much more than its standard deviation that this would be read as how well it is known."""
-    limits = _range(results)
-    open_ = _open(results) or not (results.wear.regions or results.open_volume.measured_thinning == 0.0)
-    return limits is not None and open_ and limits[1] - limits[0] > 2.0 * LOPSIDED * NORMAL_95 * results.wear.volume_std
+    return "; ".join(filter(None, (text, open_words(results), worn_so_thin(results))))
 
 
 def _no_wear(results: Results) -> str:
     otherwise = "nothing else" if results.pieces else "nothing"
     text = f"no wear was found: {otherwise} on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
-    if _open(results):
-        return f"no wear stands out, but {_may_be(results)}"
-    if results.open_volume.measured_thinning > 0.0:
-        question = "whether the teeth were cut as thin as they were measured or are worn evenly to that"
-        return f"no wear stands out, but {question} the scan does not decide: it may be {_limits(results)}"
+    if is_open(results):
+        return f"no wear stands out, but {open_words(results)}"
     limit = results.wear.found.would_have_shown
     if limit is None:
-        return f"{text}; the flanks are seen too thinly to say what would have shown"
+        return "; ".join(filter(None, (text, "the flanks are seen too thinly to say what would have shown", open_words(results))))
     extent = "" if results.planar else f" over {significant(limit.area, 2)}{SPACE}mm²"
     silent = sum(not flank.says for flank in results.wear.found.flanks)
     where = f"all but {counted(silent, 'flank')}, seen too thinly to say" if silent else "every flank"
-    return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on {where}"
+    shown = f"wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on {where}"
+    return "; ".join(filter(None, (text, shown, open_words(results))))
 
 
 def depth_words(region: WearRegion, unit: str = "µm") -> str:
@@ -263,7 +166,7 @@ def loop_words(results: Results) -> str:
             if effect.alternatives:
                 others = listed((effect_title(name) for name in effect.alternatives), "or")
                 said.append(f"the data cannot tell {effect_title(effect.name)} from {others}")
-        said += alike_words(loop)
+        said += alike_words(results)
         text = f"taking {'it' if len(effects) == 1 else 'them'} out brings the RMS outside wear from {_um(loop.rms_before)} to {_um(loop.rms_after)}{SPACE}µm"
         if math.isfinite(loop.held_out_before) and math.isfinite(loop.held_out_after):
             text += f" ({_um(loop.held_out_before)} to {_um(loop.held_out_after)}{SPACE}µm on data the fit never saw)"
@@ -273,13 +176,14 @@ def loop_words(results: Results) -> str:
     return " ".join(map(sentence, [*said, unexplained_words(loop, results.gear)]))
 
 
-def alike_words(loop: Loop) -> list[str]:
-    """Which effects the scan can hardly tell apart, a clause each."""
+def alike_words(results: Results) -> list[str]:
+    """Which effects of those named the scan can hardly tell apart, a clause each: forms that the drawing leaves open are not named."""
+    named = {effect.name for effect in results.effects}
     return [
         f"the sizes of {effect_title(pair.effects[0])} and {effect_title(pair.effects[1])} are correlated by {number(pair.value, 2)}:"
         f" their {'difference' if pair.value > 0.0 else 'sum'} is known far better than either"
-        for pair in loop.correlations
-        if abs(pair.value) > ALIKE
+        for pair in (() if results.loop is None else results.loop.correlations)
+        if abs(pair.value) > ALIKE and named.issuperset(pair.effects)
     ]
 
 
@@ -420,8 +324,8 @@ def _um(value: float) -> str:
 def key_figures(results: Results) -> list[KeyFigure]:
     """The figures that come first."""
     wear, loop, planar = results.wear, results.loop, results.planar
-    size = _size(results)
-    flanks = _where_lost(results)
+    size = size_words(results)
+    flanks = where_lost(results)
     if results.pieces:
         flanks += "; without what is broken off"
     key = [
@@ -451,19 +355,6 @@ def key_figures(results: Results) -> list[KeyFigure]:
     else:
         key.append(KeyFigure(name, f"{_um(loop.rms_after)}{SPACE}µm", f"no effect is named; {own_noise}"))
     return key
-
-
-def _where_lost(results: Results) -> str:
-    """From which flanks, and what else the volume may be."""
-    open_, regions = _open(results), results.wear.regions
-    if not regions:
-        return "not excluded; no region stands out" if open_ or _up_to(results) else "no region stands out"
-    beside = f"likeliest {_with_own_std(results)}" if _wide(results) else _too_faint(results)
-    if open_ and not _wide(results):
-        beside = f"{_limits(results)} are not excluded"
-    worn_thin = f"up to {up_to} if worn evenly to the measured thinning" if (up_to := _up_to(results)) else ""
-    where = which_flanks(regions, results.wear.found).replace("that were seen", "seen")  # room is short beside a number
-    return "; ".join(filter(None, (f"from {where}", beside, worn_thin)))
 
 
 def _contact_figures(results: Results) -> list[KeyFigure]:

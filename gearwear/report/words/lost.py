@@ -1,0 +1,147 @@
+"""How much is lost, in words: the value with its standard deviation, and what else it may be where more than that is open."""
+
+from __future__ import annotations
+
+from gearwear.comparison.open_volume import Open
+from gearwear.comparison.results import Results
+from gearwear.design.quantity import NORMAL_95, SPACE, significant, with_std
+from gearwear.report.words.numbers import which_flanks
+
+WIDE = 4.0
+"""Times its own 95 % interval from which on the range of a volume is told in the value's place: that would be read as how well it is known."""
+MADE_OR_WORN = "whether flanks are worn throughout or were made so"
+CUT_OR_WORN = "whether the teeth were cut thinner than drawn or are worn evenly"
+MEASURED_OR_WORN = "whether the teeth were cut as thin as they were measured or are worn evenly to that"
+QUESTIONS = {
+    Open.SIDES: (MADE_OR_WORN, "worn throughout, or made so"),
+    Open.FORM: (MADE_OR_WORN, "worn throughout, or made so"),
+    Open.THIN: (CUT_OR_WORN, "cut thinner, or worn evenly"),
+    Open.EVEN: (CUT_OR_WORN, "cut thinner, or worn evenly"),
+    Open.TOLERANCE: (
+        "whether the teeth were cut thinner within their tolerance or are worn evenly",
+        "cut thinner within the tolerance, or worn evenly",
+    ),
+    Open.VIEWS: ("how much of that is views that lie apart", "views that lie apart"),
+    Open.UNSURE: ("how much the flanks that look worn have lost", "loss of flanks that look worn"),
+    Open.RIDGE: ("how high the worn flanks stood as they were made", "cut thicker, or a ridge"),
+    Open.UNSEEN: ("how much is missing where no worn flank was seen", "worn flanks not seen whole"),
+    Open.PITS: ("how many pits or grooves other flanks have", "pits on other flanks"),
+}
+"""What the scan does not decide, and the same beside a number; of wear too faint to be found more is known."""
+
+
+def lost_words(results: Results) -> str:
+    """How much of what is gone."""
+    return f"{size_words(results)} {'of the section' if results.planar else 'of metal'}"
+
+
+def size_words(results: Results) -> str:
+    """The volume with its standard deviation; between what it lies, where that is much more than its own 95 %."""
+    return _limits(results) if _wide(results) else _with_own_std(results)
+
+
+def is_open(results: Results) -> bool:
+    """Whether the scan leaves open if what was found, or not found, is wear."""
+    return bool(_question(results))
+
+
+def open_words(results: Results) -> str:
+    """What the scan does not decide of the volume, and what it may be as well; where that leads, what it likeliest is. "" where nothing is open."""
+    question = _question(results)
+    if not question:
+        return _too_faint(results)
+    told = f"it may be {_limits(results)}"
+    if results.wear.regions and _wide(results):
+        told = f"{'where it was seen it' if _in_part(results) else 'the likeliest'} is {_with_own_std(results)}"
+    return f"{question} the scan does not decide: {told}"
+
+
+def worn_so_thin(results: Results) -> str:
+    """What the volume may come to where the teeth are as thin as the design has them from a gear that was measured; "" where a drawing says how thin."""
+    up_to = _up_to(results)
+    return (
+        f"were the teeth not cut as thin as they were measured but worn evenly to that, it would be up to {up_to}"
+        if up_to
+        else ""
+    )
+
+
+def where_lost(results: Results) -> str:
+    """From which flanks, what else the volume may be, and why."""
+    open_, regions, widest = is_open(results), results.wear.regions, results.open_volume.widest
+    why = f"; {QUESTIONS[widest][1]}" if widest is not None and widest in QUESTIONS else ""
+    if not regions:
+        beside = f"not excluded{why}" if open_ else ""
+        return "; ".join(filter(None, (beside, "no region stands out", _too_faint(results))))
+    beside = _too_faint(results)
+    if open_:
+        beside = f"{_limits(results)} are not excluded{why}"
+        if _wide(results):
+            beside = f"{'where seen' if _in_part(results) else 'likeliest'} {_with_own_std(results)}{why}"
+    worn_thin = f"up to {up_to} if worn evenly to the measured thinning" if (up_to := _up_to(results)) else ""
+    where = which_flanks(regions, results.wear.found).replace("that were seen", "seen")  # room is short beside a number
+    return "; ".join(filter(None, (f"from {where}", beside, worn_thin)))
+
+
+def may_be_none(results: Results) -> bool:
+    """Whether nothing at all may be gone where flanks look worn: by the volume's own 95 %, or by its limits where the deepest place's say so too."""
+    wear, limits = results.wear, _range(results)
+    if wear.volume < NORMAL_95 * wear.volume_std:
+        return True
+    depth = None if wear.deepest is None else results.open_volume.depth_limits(wear.deepest)
+    return is_open(results) and limits is not None and limits[0] <= 0.0 and depth is not None and depth[0] <= 0.0
+
+
+def _question(results: Results) -> str:
+    """What the scan does not decide, where that leaves more open than the volume's own 95 %; "" else."""
+    widest = results.open_volume.widest
+    if widest is not None and widest in QUESTIONS:
+        return QUESTIONS[widest][0]
+    return MEASURED_OR_WORN if not results.wear.regions and results.open_volume.measured_thinning > 0.0 else ""
+
+
+def _in_part(results: Results) -> bool:
+    """Whether the value is of what was seen of the worn flanks, and not the likeliest of all of them."""
+    return results.open_volume.widest is Open.UNSEEN
+
+
+def _up_to(results: Results) -> str:
+    limits = results.volume_range
+    return "" if limits is None or results.open_volume.measured_thinning == 0.0 else _volume(limits[1], results)
+
+
+def _volume(value: float, results: Results) -> str:
+    return f"{significant(value, 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
+
+
+def _too_faint(results: Results) -> str:
+    """What the volume may come to with wear that does not stand out; "" where that is within what is known of it."""
+    if results.open_volume.widest is not Open.FAINT:
+        return ""
+    limits = results.open_volume.of_such_teeth
+    assert limits is not None
+    return f"with wear too shallow to be found it may be up to {_volume(limits[1], results)}"
+
+
+def _limits(results: Results) -> str:
+    """Between what the volume lies where more than its standard deviation leaves it open; its own 95 % is in it at either end. Of flanks that look worn no
+    nought is told: their deepest place has limits of its own."""
+    limits = _range(results)
+    assert limits is not None
+    low = "up to" if results.wear.regions and limits[0] <= 0.0 else f"{significant(limits[0], 2)} to"
+    return f"{low} {_volume(limits[1], results)}"
+
+
+def _range(results: Results) -> tuple[float, float, str] | None:
+    """The limits of the volume; beside wear that stands out those of teeth as thin as the design has them, which leave it its own place in the words."""
+    return results.open_volume.of_such_teeth if results.wear.regions else results.volume_range
+
+
+def _with_own_std(results: Results) -> str:
+    return with_std(results.wear.volume, results.wear.volume_std, "mm²" if results.planar else "mm³")
+
+
+def _wide(results: Results) -> bool:
+    """Whether what is open of the volume is so much more than its standard deviation that this would be read as how well it is known."""
+    limits = _range(results)
+    return limits is not None and is_open(results) and limits[1] - limits[0] > 2.0 * WIDE * NORMAL_95 * results.wear.volume_std
