@@ -111,7 +111,7 @@ def test_a_range_hardly_wider_than_the_deviation_says_comes_after_it():
 
 OPENED = {
     "worn flanks not seen whole": (lambda r: changed(r, "wear.found.unseen", 50.0), "90 to 141", "where it was seen it is"),
-    "cut thinner within the tolerance, or worn evenly": (lambda r: worn_within(r, 0.2), "36 to 145", "the likeliest is"),
+    "cut thinner within the tolerance or worn evenly": (lambda r: worn_within(r, 0.2), "36 to 145", "the likeliest is"),
     "pits on other flanks": (lambda r: changed(r, "wear.found.hidden_pits", 50.0), "90 to 141", "the likeliest is"),
 }
 

@@ -13,21 +13,21 @@ MADE_OR_WORN = "whether flanks are worn throughout or were made so"
 CUT_OR_WORN = "whether the teeth were cut thinner than drawn or are worn evenly"
 MEASURED_OR_WORN = "whether the teeth were cut as thin as they were measured or are worn evenly to that"
 QUESTIONS = {
-    Open.SIDES: (MADE_OR_WORN, "worn throughout, or made so"),
-    Open.FORM: (MADE_OR_WORN, "worn throughout, or made so"),
-    Open.THIN: (CUT_OR_WORN, "cut thinner, or worn evenly"),
-    Open.EVEN: (CUT_OR_WORN, "cut thinner, or worn evenly"),
+    Open.SIDES: (MADE_OR_WORN, "worn or made so"),
+    Open.FORM: (MADE_OR_WORN, "worn or made so"),
+    Open.THIN: (CUT_OR_WORN, "cut thinner or worn evenly"),
+    Open.EVEN: (CUT_OR_WORN, "cut thinner or worn evenly"),
     Open.TOLERANCE: (
         "whether the teeth were cut thinner within their tolerance or are worn evenly",
-        "cut thinner within the tolerance, or worn evenly",
+        "cut thinner within the tolerance or worn evenly",
     ),
     Open.VIEWS: ("how much of that is views that lie apart", "views that lie apart"),
     Open.UNSURE: ("how much the flanks that look worn have lost", "loss of flanks that look worn"),
-    Open.RIDGE: ("how high the worn flanks stood as they were made", "cut thicker, or a ridge"),
+    Open.RIDGE: ("how high the worn flanks stood as they were made", "cut thicker or a ridge"),
     Open.UNSEEN: ("how much is missing where no worn flank was seen", "worn flanks not seen whole"),
     Open.PITS: ("how many pits or grooves other flanks have", "pits on other flanks"),
 }
-"""What the scan does not decide, and the same beside a number; of wear too faint to be found more is known."""
+"""What the scan does not decide, and the same beside a number, without a comma, at which a terminal may cut it; of wear too faint to be found more is known."""
 
 
 def lost_words(results: Results) -> str:
