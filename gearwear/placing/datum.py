@@ -144,8 +144,8 @@ def bends_otherwise(side: Side, seen: str = "", others: int = 0) -> str:
 
 def taken_for_unworn(side: Side, worn: int = 0) -> str:
     """That the flanks of a side are assumed unworn, but for so many on which wear was found."""
-    but = f", but for {worn} on which wear stands out," if worn else ""
-    return f"the {side} (coast) flanks{but} are assumed unworn"
+    which = f"all {side} flanks but {worn}" if worn else f"the {side} (coast) flanks"
+    return f"{which} are assumed unworn"
 
 
 def _low(cells: Cells, noise: float, ignore: frozenset[int]) -> float | None:
