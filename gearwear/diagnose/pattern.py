@@ -90,9 +90,16 @@ class Pattern:
         if self.in_space is not None:
             return f"{self.in_space.describe()}, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"
         round_ = "the same on every tooth" if self.order == 0 else f"{self.order} waves round the gear"
-        along = f"wavelength {face_width / self.waves_z:.1f} mm along z" if self.waves_z >= 0.5 else "even along z"
-        profile = f"{self.waves_profile:.1f} waves along the profile" if self.waves_profile >= 0.5 else "even along the profile"
+        along = _course(self.waves_z, f"wavelength {face_width / max(self.waves_z, 0.5):.1f} mm") + " along z"
+        profile = _course(self.waves_profile, f"{self.waves_profile:.1f} waves") + " along the profile"
         return f"{round_}, flanks {self.sides}, {along}, {profile}, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"
+
+
+def _course(waves: float, whole: str) -> str:
+    """How a pattern runs over a flank: what has not one wave on it is no wave to those who see it."""
+    if waves < 0.5:
+        return "even"
+    return "sloping or bowed" if waves < 0.8 else whole
 
 
 def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) -> tuple[Pattern, ...]:

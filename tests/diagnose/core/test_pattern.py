@@ -45,6 +45,16 @@ def test_waves_along_the_face_come_back(waves):
     assert found.p_value < 1e-6
 
 
+@pytest.mark.parametrize(("waves", "course"), [(None, "sloping or bowed"), (0.0, "even"), (2.0, "wavelength 7.5 mm")])
+def test_what_has_no_wave_on_a_flank_is_called_none(waves, course):
+    one, rng = grid(0.8), np.random.default_rng(2)
+    at = sides_of(one)
+    along = 2.0 * at.z - 1.0 if waves is None else np.cos(2.0 * np.pi * waves * at.z)
+    sheets = 0.004 * along * np.cos(2.0 * np.pi * 3.0 * at.tooth / TEETH)
+    (found,) = search(one, sheets + noisy(one, rng, sheets.shape))
+    assert f", {course} along z, even along the profile, " in found.describe(15.0)
+
+
 def test_two_orders_are_told_apart_the_stronger_first():
     one, rng = grid(), np.random.default_rng(3)
     at = sides_of(one)
