@@ -156,10 +156,9 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
             f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {significant(wear.hidden_pits, 2)} mm³"
         )
     open_ = even_loss(measured, wear)
-    if open_ is not None and not before:
-        low, high = max(wear.volume - open_, 0.0), wear.volume + open_
+    if open_ and not before:
         notes.append(
-            f"the tolerance of the tooth thickness leaves an even loss of whole flanks open: the volume may lie between {low:.3g} and {high:.3g} mm³;"
+            f"the tolerance of the tooth thickness leaves an even loss of whole flanks open: {significant(open_, 2)} {UNIT[wear.planar]} less or more;"
             " what has the shape of sliding does not hang on it"
         )
     return tuple(notes)

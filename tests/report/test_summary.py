@@ -15,6 +15,7 @@ import pytest
 from rich.console import Console
 
 from gearwear.commands import progress
+from gearwear.comparison.notes import worn_notes
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.diagnose.pattern import Pattern
@@ -135,6 +136,16 @@ def test_whatever_opens_the_range_is_told_with_it(reason):
     assert said.startswith(f"{range_} mm³ of metal is gone from 3 left flanks")
     assert f"the scan does not decide: {likeliest} 90.80 ± 0.51 mm³" in said
     assert figure.value.replace("\u202f", " ") == f"{range_} mm³" and reason in figure.note
+
+
+def test_the_tolerance_is_told_by_what_it_opens():
+    """0.2 mm · cos 20° · 289.2 mm² = 54 mm³; with 50 mm³ unseen the verdict has 90.8 + 54 + 50. Told as limits, it stood beside wider ones."""
+    results = changed(worn_within(fake_results(), 0.2), "wear.found.unseen", 50.0)
+    (note,) = [note for note in worn_notes(results.measured, results.wear.found) if "tolerance" in note]
+    assert "an even loss of whole flanks open: 54 mm³ less or more" in note
+    assert "between" not in note and verdict(results).startswith("36 to 195")
+    none = changed(results, "wear.found.regions", ())
+    assert not any("tolerance" in note for note in worn_notes(none.measured, none.wear.found))
 
 
 def test_limits_down_to_nothing_are_no_nought_where_the_deepest_place_is_surely_low():

@@ -239,7 +239,10 @@ def test_flanks_seen_too_thinly_beside_wear_are_told_once():
     silent = [flank.tooth + 1 for flank in flanks if not flank.says and (flank.tooth, flank.side) not in worn]
     thin = changed(results, "wear.found.flanks", flanks)
     said = [doubt for doubt in doubts(thin) if "too thinly" in doubt]
-    assert len(said) == 1 and said[0].startswith(f"{len(silent)} of 24 flanks, on {teeth_words(silent)}, ")
+    assert len(said) == 1 and said[0].startswith(f"{len(silent)} left flanks, on {teeth_words(silent)}, ")
+    both = changed(thin, "wear.found.flanks", (*flanks[:-1], replace(flanks[-1], depth=math.nan)))
+    (said,) = [doubt for doubt in doubts(both) if "too thinly" in doubt]
+    assert said.startswith(f"{len(silent) + 1} of 24 flanks, on {teeth_words([*silent, 12])}, ")
     assert not any("too thinly" in doubt for doubt in doubts(changed(thin, "wear.found.regions", ())))
 
 

@@ -231,8 +231,9 @@ def silent_words(results: Results) -> list[str]:
     if not told or not silent:
         return []
     be, they = ("is", "it is") if len(silent) == 1 else ("are", "they are")
-    teeth = teeth_words(flank.tooth + 1 for flank in silent)
-    return [f"{len(silent)} of {len(flanks)} flanks, on {teeth}, {be} seen too thinly to say whether {they} worn"]
+    teeth, sides = teeth_words(flank.tooth + 1 for flank in silent), {flank.side for flank in silent}
+    which = f"{len(silent)} {sides.pop()} flanks" if len(sides) == 1 < len(silent) else f"{len(silent)} of {len(flanks)} flanks"
+    return [f"{which}, on {teeth}, {be} seen too thinly to say whether {they} worn"]
 
 
 def weighed_words(weighed: WeighedLoss | None) -> list[str]:
