@@ -40,7 +40,7 @@ from gearwear.placing.registration import stray_limit
 from gearwear.placing.strays import near_centre
 from gearwear.running.found import SecondLoop
 from gearwear.wear.breakage import Broken
-from gearwear.wear.regions import Wear, WearRegion
+from gearwear.wear.regions import UNIT, Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness
 from gearwear.wear.tooth_summary import ThinnestTooth, ToothSummary
@@ -349,7 +349,7 @@ class Results(Card):
         return ~(near | find_far_points(located, grid)[1])
 
     def headline(self) -> str:
-        size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")
+        size = measured(self.wear.volume, self.wear.volume_std, UNIT[self.planar])
         return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
 
     def rows(self) -> list[CardRow]:

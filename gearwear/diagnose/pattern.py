@@ -90,16 +90,16 @@ class Pattern:
         if self.in_space is not None:
             return f"{self.in_space.describe()}, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"
         round_ = "the same on every tooth" if self.order == 0 else f"{self.order} waves round the gear"
-        along = _course(self.waves_z, f"wavelength {face_width / max(self.waves_z, 0.5):.1f} mm") + " along z"
-        profile = _course(self.waves_profile, f"{self.waves_profile:.1f} waves") + " along the profile"
-        return f"{round_}, flanks {self.sides}, {along}, {profile}, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"
+        along = _less_than_a_wave(self.waves_z) or f"wavelength {face_width / self.waves_z:.1f} mm"
+        profile = _less_than_a_wave(self.waves_profile) or f"{self.waves_profile:.1f} waves"
+        return f"{round_}, flanks {self.sides}, {along} along z, {profile} along the profile, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"
 
 
-def _course(waves: float, whole: str) -> str:
-    """How a pattern runs over a flank: what has not one wave on it is no wave to those who see it."""
+def _less_than_a_wave(waves: float) -> str:
+    """How a pattern runs over a flank on which it has not one wave: it is none to those who see it; "" else."""
     if waves < 0.5:
         return "even"
-    return "sloping or bowed" if waves < 0.8 else whole
+    return "sloping or bowed" if waves < 0.8 else ""
 
 
 def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) -> tuple[Pattern, ...]:

@@ -236,17 +236,15 @@ def exchange(problem: Problem, chosen: tuple[Candidate, ...], around: Around | N
             # What a move comes to is known from what it gains; whether its amplitudes are possible is asked where it would be taken.
             if about < least and (value := around.cost(option)) < least - 1e-6:
                 best, least = option, value
-        if best is chosen and not math.isinf(cost):
-            return chosen
         if best is chosen:
-            best = problem.possible_part(chosen)
+            best = chosen if math.isfinite(cost) else problem.possible_part(chosen)
             if len(best) == len(chosen):
                 return chosen
             least = around.cost(best)
         chosen, cost = best, least
 
 
-def _key(chosen: tuple[Candidate, ...]) -> frozenset[int]:
+def model_key(chosen: tuple[Candidate, ...]) -> frozenset[int]:
     """Tells sets of candidates apart, by the first column of each."""
     return frozenset([c.first for c in chosen])
 
@@ -263,7 +261,7 @@ class Around:
     ----------
     problem : Problem
     known : dict
-        By `_key` of the model: its own cost, and the few candidates that gain most beside it, each with what it comes to.
+        By `model_key` of the model: its own cost, and the few candidates that gain most beside it, each with what it comes to.
     costs : dict
         The same of a model whose amplitudes were asked for: infinite where they are impossible.
     prices : dict
@@ -277,7 +275,7 @@ class Around:
 
     def cost(self, model: tuple[Candidate, ...]) -> float:
         """`Problem.cost`."""
-        key = _key(model)
+        key = model_key(model)
         if key not in self.costs:
             self.costs[key] = self.problem.cost(model)
         return self.costs[key]
@@ -290,7 +288,7 @@ class Around:
 
     def look(self, bases: Sequence[tuple[Candidate, ...]]) -> None:
         """Find out about models, all that are new together."""
-        new = {key: base for base in bases if (key := _key(base)) not in self.known}
+        new = {key: base for base in bases if (key := model_key(base)) not in self.known}
         if not new:
             return
         problem = self.problem
@@ -302,10 +300,10 @@ class Around:
             self.known[key] = own, added
 
     def itself(self, base: tuple[Candidate, ...]) -> Move:
-        return base, self.known[_key(base)][0]
+        return base, self.known[model_key(base)][0]
 
     def added(self, base: tuple[Candidate, ...]) -> list[Move]:
-        return [((*base, c), cost) for c, cost in self.known[_key(base)][1]]
+        return [((*base, c), cost) for c, cost in self.known[model_key(base)][1]]
 
 
 def _moves(problem: Problem, chosen: tuple[Candidate, ...], around: Around) -> list[Move]:

@@ -18,7 +18,7 @@ from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis, colu
 from gearwear.diagnose.effects.base import Context, Effect, Shape
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.rules import rules
-from gearwear.diagnose.search import Problem, promising
+from gearwear.diagnose.search import Problem, model_key, promising
 from gearwear.placing.cells import Cells
 from gearwear.processors import each
 
@@ -99,10 +99,10 @@ class Trials:
             specific = by_tooth(tuple(one for one in model if one[0].tooth_specific))
             if specific is None:
                 shared = np.hstack([pose[:, :0], *(weighted(*one, True) for one in model)])
-                beside = _gain_in_stds(shared, aim)
+                beside = _gain_beside(shared, aim)
             else:
                 own = [weighted(*one, False) for one in model if not one[0].tooth_specific]
-                beside = _gain_in_stds(np.hstack([posed, *own]), weighted_aim, specific)
+                beside = _gain_beside(np.hstack([posed, *own]), weighted_aim, specific)
             return cast(Gain, cache(lambda effect, shape: beside(weighted(effect, shape, specific is None))))
 
         return cls(problem, columns, gain, target, weight)
@@ -180,15 +180,9 @@ def _with_columns(
     return dictionary, tuple(model)
 
 
-def _gain_beside(base: Floats, target: Floats, weight: Floats, by_tooth: ByTooth | None = None) -> Callable[[Floats], float]:
-    """Function: fall of the weighted sum of squares when columns are added to `base` and what is `by_tooth`, which are taken out of everything once."""
-    root = np.sqrt(weight)[:, None]
-    beside = _gain_in_stds(base * root, target[:, None] * root, by_tooth)
-    return lambda columns: beside(columns * root)
-
-
-def _gain_in_stds(base: Floats, aim: Floats, by_tooth: ByTooth | None = None) -> Callable[[Floats], float]:
-    """The same of columns and a target (n, 1) in standard deviations."""
+def _gain_beside(base: Floats, aim: Floats, by_tooth: ByTooth | None = None) -> Callable[[Floats], float]:
+    """Function: fall of the sum of squares of `aim` (n, 1) when columns are added to `base` and what is `by_tooth`, which are taken out of everything once;
+    all in standard deviations."""
     if by_tooth is not None:
         base, aim = by_tooth.beside(base), by_tooth.beside(aim)
     frame = orthonormal(base)
@@ -275,13 +269,12 @@ def _most_likely(problem: Problem, trials: list[tuple[Candidate, ...]]) -> list[
     """The `REFINED` cheapest of some models with the shapes that they have, in the order that they came in; each once."""
     models = dict[frozenset[int], tuple[Candidate, ...]]()
     for trial in trials:
-        models.setdefault(frozenset(int(c.columns[0]) for c in trial), trial)
+        models.setdefault(model_key(trial), trial)
     each_once = list(models.values())
     if len(each_once) <= REFINED:
         return each_once
-    costs = [problem.cost(trial) for trial in each_once]
-    cheapest = set(sorted(range(len(costs)), key=costs.__getitem__)[:REFINED])
-    return [trial for i, trial in enumerate(each_once) if i in cheapest]
+    cheapest = np.argsort([problem.cost(trial) for trial in each_once], kind="stable")[:REFINED]
+    return [each_once[i] for i in np.sort(cheapest)]
 
 
 def _nearly(gain: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float) -> Shape:

@@ -46,11 +46,10 @@ def with_untold(loop: Loop, cells: Cells) -> Loop:
     told_half = np.bincount(which[used[np.isin(points.surface[used], (FLANK, FILLET))]], minlength=flanks) > 0
     worn = np.isin(np.arange(flanks) % len(Side), [side.index for side in loop.worn_sides])  # `made` is their doubt
     seen = number > 0
-    by_most = np.array(
-        [told_half[half :: len(Side)].sum() > (seen & ~told_half)[half :: len(Side)].sum() for half in range(len(Side))]
-    )
-    at_an_edge = ~told_half & np.tile(by_most, cells.grid.gear.teeth)  # of a side that fillets tell, of all others as of this
-    hidden = np.flatnonzero(seen & np.where(worn, at_an_edge, (share < rules().untold_flank)))
+    silent, by_side = seen & ~told_half, (cells.grid.gear.teeth, len(Side))
+    by_most = told_half.reshape(by_side).sum(axis=0) > silent.reshape(by_side).sum(axis=0)
+    at_an_edge = (silent.reshape(by_side) & by_most).reshape(-1)  # of a side that the halves of most others tell
+    hidden = np.flatnonzero(seen & np.where(worn, at_an_edge, share < rules().untold_flank))
     sound = np.flatnonzero((share > rules().sound_flank) & ~worn)
     own = [i for i, found in enumerate(loop.effects) if isinstance(found.candidate.effect, EachTooth)]
     if not (len(hidden) and len(sound) and own):
@@ -84,7 +83,7 @@ def with_untold(loop: Loop, cells: Cells) -> Loop:
             known, stands, waves = beside, stands - waves, np.zeros_like(waves)
     raised, (level, level_std, shared) = np.zeros(len(flank)), np.zeros((3, cells.grid.gear.teeth, len(Side)))
     whole = np.unique(sound // len(Side))
-    both: Bools = np.asarray(told_half.reshape(-1, len(Side)).all(axis=1))[whole]
+    both: Bools = np.asarray(told_half.reshape(by_side).all(axis=1))[whole]
     whole = whole[both] if both.any() else whole
     effects, scatter = list(loop.effects), np.sqrt(np.mean(amounts[whole] ** 2, axis=0))
     for k in map(int, hidden):

@@ -514,7 +514,7 @@ def _price(columns: Floats) -> float:
 
 def _columns_of(model: Model) -> tuple[int, ...]:
     """Tells models apart, by the first column of each of their effects."""
-    return tuple(int(candidate.columns[0]) for candidate in model)
+    return tuple(candidate.first for candidate in model)
 
 
 def _lost_on(sides: Ints) -> frozenset[Side]:

@@ -41,7 +41,7 @@ from gearwear.report.words.running import running_rows, running_words, why_not_w
 from gearwear.report.words.verdict import depth_words, doubts, known, loop_words, noise
 from gearwear.report.words.wear_law import FORECAST_HEAD, far_words, forecast_caption, forecast_rows, law_words, left_words
 from gearwear.scan.types import Scan
-from gearwear.wear.regions import WearRegion
+from gearwear.wear.regions import UNIT, WearRegion
 from gearwear.wear_law.study import WearStudy
 
 KINDS = {"cloud": "point cloud", "triangles": "triangles", "section": "planar section"}
@@ -66,7 +66,7 @@ def wear(results: Results, arrays: ReportArrays, scale: ColourScale) -> Section:
 
 def _wear_words(results: Results) -> str:
     worn, before, boolean = results.wear.found, results.wear.before_loop, results.wear.boolean
-    unit = "mm²" if results.planar else "mm³"
+    unit = UNIT[results.planar]
     text = ["no region of wear stands out of the scatter of this scan"]
     if worn.regions:
         which = which_flanks(worn.regions, worn)

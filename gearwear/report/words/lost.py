@@ -6,6 +6,7 @@ from gearwear.comparison.open_volume import Open
 from gearwear.comparison.results import Results
 from gearwear.design.quantity import NORMAL_95, SPACE, significant, with_std
 from gearwear.report.words.numbers import which_flanks
+from gearwear.wear.regions import UNIT
 
 WIDE = 4.0
 """Times its own 95 % interval from which on the range of a volume is told in the value's place: that would be read as how well it is known."""
@@ -79,7 +80,7 @@ def where_lost(results: Results) -> str:
         if _wide(results):
             beside = f"{'where seen' if _in_part(results) else 'likeliest'} {_with_own_std(results)}{why}"
     worn_thin = f"up to {up_to} if worn evenly to the measured thinning" if (up_to := _up_to(results)) else ""
-    where = which_flanks(regions, results.wear.found).replace("that were seen", "seen")  # room is short beside a number
+    where = which_flanks(regions, results.wear.found, "seen")  # room is short beside a number
     return "; ".join(filter(None, (f"from {where}", beside, worn_thin)))
 
 
@@ -111,7 +112,7 @@ def _up_to(results: Results) -> str:
 
 
 def _volume(value: float, results: Results) -> str:
-    return f"{significant(value, 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
+    return f"{significant(value, 2)}{SPACE}{UNIT[results.planar]}"
 
 
 def _too_faint(results: Results) -> str:
@@ -138,7 +139,7 @@ def _range(results: Results) -> tuple[float, float, str] | None:
 
 
 def _with_own_std(results: Results) -> str:
-    return with_std(results.wear.volume, results.wear.volume_std, "mm²" if results.planar else "mm³")
+    return with_std(results.wear.volume, results.wear.volume_std, UNIT[results.planar])
 
 
 def _wide(results: Results) -> bool:

@@ -66,9 +66,9 @@ def row(values: Iterable[float], digits: int) -> str:
     return ", ".join(number(value, digits) for value in values)
 
 
-def which_flanks(regions: Iterable[WearRegion], wear: Wear | None = None) -> str:
+def which_flanks(regions: Iterable[WearRegion], wear: Wear | None = None, scanned: str = "that were seen") -> str:
     """Which flanks some regions of wear lie on, in few words: "the left flank of tooth 2", "all 3 left flanks"; of a scan of some teeth alone
-    "all 3 left flanks that were seen". `wear` is all that was found, None for "3 left flanks"."""
+    "all 3 left flanks that were seen", or another word for what was `scanned`. `wear` is all that was found, None for "3 left flanks"."""
     flanks = {(region.tooth + 1, region.side) for region in regions}
     sides = {side for _, side in flanks}
     if len(flanks) == 1:
@@ -76,9 +76,10 @@ def which_flanks(regions: Iterable[WearRegion], wear: Wear | None = None) -> str
         return f"the {side} flank of tooth {tooth}"
     if len(sides) == 1:
         side = sides.pop()
-        seen, teeth = (0, 0) if wear is None else (wear.flanks_seen(side), len(wear.side_maps.count))
-        every, scanned = len(flanks) == seen, " that were seen" if seen < teeth else ""
-        return f"all {len(flanks)} {side} flanks{scanned}" if every else f"{len(flanks)} {side} flanks"
+        which = f"{len(flanks)} {side} flanks"
+        if wear is None or len(flanks) != wear.flanks_seen(side):
+            return which
+        return f"all {which}" if len(flanks) == len(wear.side_maps.count) else f"all {which} {scanned}"
     numbers = {tooth for tooth, _ in flanks}
     return f"{len(flanks)} flanks of {counted(len(numbers), 'tooth', 'teeth')}"
 

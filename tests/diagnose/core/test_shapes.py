@@ -200,10 +200,13 @@ def test_what_is_by_tooth_is_taken_out_as_columns_are():
     def left(*columns):
         return np.linalg.lstsq(np.hstack(columns) * root[:, None], target * root)[1][0]
 
-    taken_out = ByTooth.of(by_tooth * root[:, None])
+    def weighted(*columns):
+        return np.hstack(columns) * root[:, None]
+
+    taken_out, aim = ByTooth.of(weighted(by_tooth)), weighted(target[:, None])
     gained = left(base, by_tooth) - left(base, by_tooth, tried)
-    assert _gain_beside(base, target, weight, taken_out)(tried) == pytest.approx(gained, rel=1e-9)
-    assert _gain_beside(np.hstack([base, by_tooth]), target, weight)(tried) == pytest.approx(gained, rel=1e-9)
+    assert _gain_beside(weighted(base), aim, taken_out)(weighted(tried)) == pytest.approx(gained, rel=1e-9)
+    assert _gain_beside(weighted(base, by_tooth), aim)(weighted(tried)) == pytest.approx(gained, rel=1e-9)
     assert np.abs(taken_out.columns.T @ taken_out.beside(base)).max() < 1e-12
 
 
