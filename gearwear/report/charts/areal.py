@@ -14,9 +14,9 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.laboratory import Laboratory
 from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.inspection.waviness import Waviness
-from gearwear.report.charts.sheet import A4, SIDE_NAMES, WIDTH, headline, micrometres, sheet
-from gearwear.report.figures.colours import BLUE, DIVERGING, INK, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale, colour_scale
-from gearwear.report.figures.maps import usual_range
+from gearwear.report.charts.sheet import A4, SIDE_NAMES, WIDTH, headline, micrometres, plain, sheet
+from gearwear.report.figures.colours import BLUE, INK, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale, colour_scale
+from gearwear.report.figures.maps import colours, usual_range
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -101,10 +101,7 @@ def _title(axis: Axes, words: str) -> None:
 
 
 def _mean_flank(axis: Axes, examined: Laboratory, side: Side, scale: ColourScale) -> None:
-    from matplotlib.colors import LinearSegmentedColormap
-
     areal = examined.areal
-    colours = LinearSegmentedColormap.from_list("deviation", DIVERGING)
     shown = np.ma.masked_invalid(0.5 + 0.5 * scale.fraction(1e3 * areal.mean_flank[side.index]))
     where, face = areal.profile_range, areal.helix_range
     axis.set_facecolor(UNSEEN)
@@ -113,7 +110,7 @@ def _mean_flank(axis: Axes, examined: Laboratory, side: Side, scale: ColourScale
         origin="lower",
         aspect="auto",
         extent=(where.start, where.end, face.start, face.end),
-        cmap=colours,
+        cmap=colours(),
         vmin=0.0,
         vmax=1.0,
     )
@@ -125,12 +122,9 @@ def _mean_flank(axis: Axes, examined: Laboratory, side: Side, scale: ColourScale
 
 
 def _bar(figure: Figure, scale: ColourScale) -> None:
-    from matplotlib.colors import LinearSegmentedColormap
-
     low, height = ROWS[0]
     axis = figure.add_axes((285.0 / WIDTH, low / A4, 2.5 / WIDTH, height / A4))
-    colours = LinearSegmentedColormap.from_list("deviation", DIVERGING)
-    axis.imshow(np.linspace(0.0, 1.0, 120)[:, None], origin="lower", aspect="auto", extent=(0.0, 1.0, -1.0, 1.0), cmap=colours)
+    axis.imshow(np.linspace(0.0, 1.0, 120)[:, None], origin="lower", aspect="auto", extent=(0.0, 1.0, -1.0, 1.0), cmap=colours())
     axis.set_xticks([])
     axis.yaxis.tick_right()
     axis.set_yticks([float(scale.fraction(np.array(tick))) for tick in scale.ticks_um], scale.tick_labels)
@@ -225,7 +219,7 @@ def _composite(axis: Axes, composite: Composite, inspection: Inspection) -> None
     axis.set_ylabel("µm", fontsize=7, color=INK)
     axis.text(1.0, -0.2, "rotation of the gear, °", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
     rolled = [
-        f"{finding.symbol.replace('_', '')} {micrometres(finding.value)} ± {micrometres(finding.expanded)} µm, {finding.statement}"
+        f"{plain(finding.symbol)} {micrometres(finding.value)} ± {micrometres(finding.expanded)} µm, {finding.statement}"
         for finding in inspection.radial
     ]
     design = "the design without modifications" if inspection.gear.modified else "the design"

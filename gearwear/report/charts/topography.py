@@ -10,7 +10,8 @@ from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.inspection import Inspection
 from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, headline, sheet
-from gearwear.report.figures.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
+from gearwear.report.figures.colours import INK, MUTED, UNSEEN, ColourScale, colour_scale
+from gearwear.report.figures.maps import colours
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,12 +39,10 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
     Figure
     """
     from matplotlib.collections import LineCollection, PolyCollection
-    from matplotlib.colors import LinearSegmentedColormap
 
     surface, gear = inspection.topography, inspection.gear
     heights = surface.deviation[tooth]
-    colours = LinearSegmentedColormap.from_list("deviation", DIVERGING)
-    scale: ColourScale = colour_scale(1e3 * heights)
+    shades, scale = colours(), colour_scale(1e3 * heights)
     least, most = float(np.nanmin(heights, initial=0.0)), float(np.nanmax(heights, initial=0.0))
     lift = next((m for m in MAGNIFICATIONS if m * (most - least) <= LIFT), 1)
     top = A4 - 24.0
@@ -77,7 +76,7 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
             ).ravel()
         )
         seen = np.flatnonzero(np.isfinite(means))[::-1]  # from the far edge to the near one
-        faces = colours(0.5 + 0.5 * scale.fraction(1e3 * means[seen]))
+        faces = shades(0.5 + 0.5 * scale.fraction(1e3 * means[seen]))
         page.add_collection(PolyCollection(list(quads[seen]), facecolors=faces, edgecolors=MUTED, linewidths=0.25))
         corners = place(
             np.array([form, tip, tip, form, form]),
@@ -92,7 +91,7 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
             page.text(corners[at, 0] + shift[0], corners[at, 1] + shift[1], label, fontsize=7, color=MUTED, ha=align, va="center")
         for at, label in ((2, f"tip, L = {gear.tip_roll:.2f} mm"), (3, f"form circle, L = {gear.form_roll:.2f} mm")):
             page.text(corners[at, 0], corners[at, 1] + lift * most + 2.5, label, fontsize=7, color=MUTED, ha="center")
-    _colour_strip(page, colours(np.linspace(0, 1, 120)), scale)
+    _colour_strip(page, shades(np.linspace(0, 1, 120)), scale)
     return figure
 
 

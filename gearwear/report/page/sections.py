@@ -23,6 +23,7 @@ from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.shafts import take_up_words
+from gearwear.report.charts.sheet import plain
 from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale
 from gearwear.report.page import pictures
@@ -364,7 +365,7 @@ def _rolled(result: Inspection) -> list[Block]:
 def _findings(findings: Sequence[Finding]) -> Table | None:
     rows = [
         (
-            finding.symbol.replace("_", ""), effect_title(finding.quantity), str(finding.side or ""), "" if finding.tooth is None else str(finding.tooth + 1),
+            plain(finding.symbol), effect_title(finding.quantity), str(finding.side or ""), "" if finding.tooth is None else str(finding.tooth + 1),
             finding.statement or str(finding.grade.verdict), *(number(1e3 * v, 1) for v in (finding.value, finding.expanded, finding.grade.tolerance)),
             MISSING if finding.grade.iso_class is None else str(finding.grade.iso_class),
         )
