@@ -113,3 +113,15 @@ def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None 
     z = section_heights(gear) if z is None else z
     psi = gear.half_angles(radius, z)
     return ToothProfiles(gear, radius, z, np.broadcast_to(psi, (gear.teeth, *psi.shape)).copy())
+
+
+def straight_weights(places: Floats, where: Floats) -> Floats:
+    """Weights (n, k) of values at `places` (k,) for straight lines between them, and on beyond the outer ones."""
+    if len(places) == 1:
+        return np.ones((len(where), 1))
+    low = np.clip(np.searchsorted(places, where) - 1, 0, len(places) - 2)
+    share = (where - places[low]) / (places[low + 1] - places[low])
+    weights = np.zeros((len(where), len(places)))
+    rows = np.arange(len(where))
+    weights[rows, low], weights[rows, low + 1] = 1.0 - share, share
+    return weights

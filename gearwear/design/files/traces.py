@@ -14,7 +14,7 @@ from gearwear.arrays import Floats
 from gearwear.design.files.toml import read_small
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.profiles import ToothProfiles, section_radii
+from gearwear.design.profiles import ToothProfiles, section_radii, straight_weights
 from gearwear.design.quantity import at_most
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
@@ -323,25 +323,13 @@ def flank_surface(
         ]
 
     def surface(roll: Floats, z: Floats) -> Floats:
-        over_z = _hats(heights, z)  # (m, j)
+        over_z = straight_weights(heights, z)  # (m, j)
         along = np.stack([profile(roll) for profile in profiles])
         if not helices:
             return np.asarray(over_z @ along)
-        over_roll = _hats(rolls, roll)  # (n, i)
+        over_roll = straight_weights(rolls, roll)  # (n, i)
         across = np.stack([helix(z) for helix in helices])
         crossing = 0.5 * (np.stack([profile(rolls) for profile in profiles]) + np.stack([helix(heights) for helix in helices]).T)
         return np.asarray(over_z @ along + (over_roll @ across).T - over_z @ crossing @ over_roll.T)
 
     return surface
-
-
-def _hats(places: Floats, where: Floats) -> Floats:
-    """Weights (n, k) of values at `places` (k,) for straight lines between them, and on beyond the outer ones."""
-    if len(places) == 1:
-        return np.ones((len(where), 1))
-    low = np.clip(np.searchsorted(places, where) - 1, 0, len(places) - 2)
-    share = (where - places[low]) / (places[low + 1] - places[low])
-    weights = np.zeros((len(where), len(places)))
-    rows = np.arange(len(where))
-    weights[rows, low], weights[rows, low + 1] = 1.0 - share, share
-    return weights

@@ -14,7 +14,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import ToothProfiles
+from gearwear.design.profiles import ToothProfiles, straight_weights
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
 from gearwear.design.twist import drawn_height, section_angle, segments, twisted
@@ -116,13 +116,14 @@ def _of_one_helix(arrays: ReportArrays, worn: bool, columns: int, z: Floats) -> 
         psi = psi.copy()
         psi[..., -1] = np.minimum(psi[..., -1], gear.tip_half_angle)
 
+    values = _flank_values(arrays, arrays.deviation_um, high, z) if worn else None
     centre = np.arange(gear.teeth)[:, None, None] * gear.pitch_angle
     split = len(low) - 1
     pieces = []
     for sign in Side:
         side, word = sign.index, f"{sign} flank"
         angle = centre + sign * psi[:, side]
-        colour = _flank_colours(arrays, side, radius[split:], z) if worn else None
+        colour = None if values is None else values[:, side]
         pieces.append(_strips(word, radius[split:], angle[..., split:], z, colour, flip=side == 0))
         colours = _fillet_colours(arrays, sign, low, z) if worn else None
         pieces.append(_strips(word.replace("flank", "fillet"), low, angle[..., : split + 1], z, colours, flip=side == 0))
@@ -244,18 +245,10 @@ def _fineness(arrays: ReportArrays, budget: int) -> tuple[int, int]:
 
 
 def _linear(new: Floats, old: Floats) -> Floats:
-    """(len(old), len(new)) weights of linear interpolation, constant beyond the ends."""
+    """(len(old), len(new)) weights of linear interpolation, constant beyond the ends; `old` may fall."""
     if old[0] > old[-1]:
         return _linear(new, old[::-1])[::-1]
-    weights = np.zeros((len(old), len(new)))
-    if len(old) == 1:
-        weights[:] = 1.0
-        return weights
-    upper = np.clip(np.searchsorted(old, new), 1, len(old) - 1)
-    share = np.clip((new - old[upper - 1]) / (old[upper] - old[upper - 1]), 0.0, 1.0)
-    weights[upper - 1, np.arange(len(new))] = 1.0 - share
-    weights[upper, np.arange(len(new))] += share
-    return weights
+    return straight_weights(old, new.clip(old[0], old[-1])).T
 
 
 def _half_angles(profiles: ToothProfiles, radius: Floats, z: Floats) -> Floats:
@@ -274,10 +267,6 @@ def _flank_values(arrays: ReportArrays, values: Floats, radius: Floats, z: Float
     weight = rows @ (seen.astype(np.float64) @ columns)
     total = rows @ (np.where(seen, values, 0.0) @ columns)
     return np.where(weight >= 0.5, total / np.maximum(weight, 0.5), np.nan)
-
-
-def _flank_colours(arrays: ReportArrays, side: int, radius: Floats, z: Floats) -> Floats:
-    return _flank_values(arrays, arrays.deviation_um, radius, z)[:, side]
 
 
 def _fillet_colours(arrays: ReportArrays, sign: int, radius: Floats, z: Floats) -> Floats:
