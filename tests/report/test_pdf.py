@@ -201,7 +201,7 @@ def test_the_traces_of_many_teeth_are_sheets_of_paper_that_show_every_tooth_once
 
     monkeypatch.setattr(traces, "PER_ROW", 5)
     profile = next(chart for chart in inspection_charts(real_results().inspection) if chart.title == "Profile chart")
-    sheets = profile.sheets()
+    sheets = list(profile.sheets())
     assert len(sheets) == 3
     common, teeth = magnification(profile.figure()), []
     for figure in sheets:

@@ -46,12 +46,8 @@ class InspectionChart:
         """Whether it takes more than one sheet of paper."""
         return self.in_rows and len(self._rows) > 1
 
-    def sheets(self) -> list[Figure]:
-        """A row of teeth on each, all at one magnification."""
-        return [*self.pages()]
-
     def pages(self) -> Iterator[Figure]:
-        """The same, each drawn when it is asked for."""
+        """A row of teeth on each, all at one magnification, drawn when it is asked for."""
         from matplotlib.figure import Figure
 
         return (self.draw(Figure(), self.inspection, row) for row in self._rows)

@@ -49,9 +49,7 @@ LENGTHS = tuple(m * 10.0**e for e in (1, 0, -1, -2) for m in (8.0, 6.0, 5.0, 4.0
 """Magnifications along the trace, falling."""
 
 
-def profile_chart(
-    figure: Figure, inspection: Inspection, teeth: Sequence[int] | None = None, magnification: int | None = None
-) -> Figure:
+def profile_chart(figure: Figure, inspection: Inspection, teeth: Sequence[int] | None = None) -> Figure:
     """Profile traces of all teeth: left flanks on the left, right flanks on the right, tip up, + (more material) to the right.
 
     Parameters
@@ -62,26 +60,22 @@ def profile_chart(
         What was found; its K bands, if any, are drawn, and what is outside of them is marked.
     teeth : sequence of int or None
         0-based teeth to draw; None: all.
-    magnification : int or None
-        Of the deviation, paper : part; None: the largest of 1, 2, 5 × 10ⁿ that holds four of five traces of all teeth.
 
     Returns
     -------
     Figure
     """
-    return _trace_chart(figure, inspection, inspection.profile, teeth, magnification)
+    return _trace_chart(figure, inspection, inspection.profile, teeth)
 
 
-def helix_chart(
-    figure: Figure, inspection: Inspection, teeth: Sequence[int] | None = None, magnification: int | None = None
-) -> Figure:
+def helix_chart(figure: Figure, inspection: Inspection, teeth: Sequence[int] | None = None) -> Figure:
     """Helix traces of all teeth, +z up; otherwise as `profile_chart`."""
-    return _trace_chart(figure, inspection, inspection.helix, teeth, magnification)
+    return _trace_chart(figure, inspection, inspection.helix, teeth)
 
 
 def section_chart(figure: Figure, inspection: Inspection, teeth: Sequence[int] | None = None, *, section: LineTraces) -> Figure:
     """Traces along one line of all flanks; otherwise as `profile_chart`."""
-    return _trace_chart(figure, inspection, section.evaluation, teeth, None, section)
+    return _trace_chart(figure, inspection, section.evaluation, teeth, section)
 
 
 def rows_of(teeth: Sequence[int]) -> list[list[int]]:
@@ -99,7 +93,6 @@ def _trace_chart(
     inspection: Inspection,
     evaluation: Evaluation,
     teeth: Sequence[int] | None,
-    magnification: int | None,
     section: LineTraces | None = None,
 ) -> Figure:
     everyone = range(inspection.gear.teeth)
@@ -109,7 +102,7 @@ def _trace_chart(
     stretch = next((m for m in LENGTHS if m * extent <= HEIGHTS[len(rows) > 1]), LENGTHS[-1])
     block = 9.0 + stretch * extent + table_height(evaluation.k is not None) + 6.0
     page = sheet(figure, max(HEAD + len(rows) * block + FOOT, A4))
-    scale = magnification or _magnification(evaluation, Panel(page, evaluation, rows[0], columns, 0.0, 1, stretch).width)
+    scale = _magnification(evaluation, Panel(page, evaluation, rows[0], columns, 0.0, 1, stretch).width)
     _head(page, inspection, evaluation, scale, stretch, section)
     pens = Pens(_AREAS, _LINES)
     for i, row in enumerate(rows):

@@ -106,8 +106,3 @@ class ReportArrays:
     def wear_shown_um(self) -> Floats:
         """(teeth, 2, n_z, n_L) −depth of wear, 0 where none is; nan where nothing was seen."""
         return np.where(np.isfinite(self.deviation_um) | (self.wear_depth_um > 0.0), -self.wear_depth_um, np.nan)
-
-    @property
-    def radius_mm(self) -> Floats:
-        """(n_L,) radius of the foot points, mm."""
-        return np.hypot(self.roll_mm, self.gear.base_radius)

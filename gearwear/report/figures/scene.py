@@ -75,7 +75,7 @@ def scene(
         "views": [
             {
                 "key": view.key, "label": view.label, "title": view.title, "words": view.words,
-                "low": view.low, "high": view.high, "limit": view.scale.limit_um, "linear": view.scale.linear_um, "ticks": view.ticks,
+                "low": -1.0, "high": view.high, "limit": view.scale.limit_um, "linear": view.scale.linear_um, "ticks": view.ticks,
             }
             for view in views
         ],

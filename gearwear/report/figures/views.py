@@ -38,13 +38,8 @@ class ColouredGear:
     pieces: Sequence[SurfaceTriangles]
 
     @property
-    def low(self) -> float:
-        """Where the colour bar begins on the scale."""
-        return -1.0
-
-    @property
     def high(self) -> float:
-        """Where it ends: nothing is too much on a map of wear."""
+        """Where the colour bar ends on the scale, of which it begins at −1: nothing is too much on a map of wear."""
         return 0.0 if self.key == "wear" else 1.0
 
     @property

@@ -102,7 +102,7 @@ class Picture:
     title: str
     caption: str
     trim: bool = True
-    sheets: Callable[[], list[Figure]] | None = None
+    sheets: Callable[[], Iterable[Figure]] | None = None
 
     def figure(self) -> Figure:
         """The drawing, in the style of the report."""

@@ -294,7 +294,7 @@ def inspection_charts(inspection: Inspection, half: str = "") -> list[Picture]:
     charts, ident = charts_of(inspection), half and f"-{half}"
     told = [(charts[kind], name, words) for kind, (name, words) in CHARTS.items() if kind in charts]
     return [
-        Picture(chart.whole, f"chart{i}{ident}", f"{name} chart", words, False, chart.sheets if chart.several else None)
+        Picture(chart.whole, f"chart{i}{ident}", f"{name} chart", words, False, chart.pages if chart.several else None)
         for i, (chart, name, words) in enumerate(told)
     ]
 

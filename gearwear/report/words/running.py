@@ -24,7 +24,7 @@ def running_words(loop: SecondLoop) -> str:
     return f"By the pattern of the wear, {listed([_effect_words(effect, stated) for effect in loop.effects])}."
 
 
-def _effect_words(effect: FoundRunning, stated: float = 0.0) -> str:
+def _effect_words(effect: FoundRunning, stated: float) -> str:
     """One effect with its numbers, and what it cannot be told from; of a gap also what the design states of it, mm."""
     shown = dict(effect.parameters)
     towards = ""
