@@ -376,7 +376,7 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     scan = scans[0]
     if scan.triangles is None or gear.body_radius > 0.0 or gear.spec.internal:
         return None
-    nominal = gear_triangles(worn_profiles(ProfileNodes.of(grid), np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))))
+    nominal = gear_triangles(worn_profiles(ProfileNodes.of(grid), np.zeros(grid.side_shape)))
     user = Triangles(pose.apply(scan.points), scan.triangles)
     try:
         removed, _, pieces = signed_difference(nominal, user)

@@ -143,6 +143,26 @@ class CellGrid:
         return np.concatenate([[0.0], *(np.linspace(start, end, count + 1)[1:] for start, end, count in zones)])
 
     @property
+    def row_middles(self) -> Floats:
+        """(rows,) heights, mm."""
+        return np.asarray(0.5 * (self.z_edges[1:] + self.z_edges[:-1]), dtype=np.float64)
+
+    @property
+    def column_middles(self) -> Floats:
+        """(flank,) lengths of roll, mm."""
+        return self.rolls(2)[1::2]
+
+    @property
+    def fillet_middles(self) -> Floats:
+        """(fillet,) radii, mm."""
+        return np.asarray(0.5 * (self.fillet_radius[1:] + self.fillet_radius[:-1]), dtype=np.float64)
+
+    @property
+    def side_shape(self) -> tuple[int, int, int, int]:
+        """Of arrays over the cells of all tooth sides: teeth, sides, rows, fillet and flank columns."""
+        return self.gear.teeth, 2, self.rows, self.fillet + self.flank
+
+    @property
     def groove_rows(self) -> int:
         """Rows of the groove of a double helical gear, in the middle: the others divide its halves evenly, and these hold no cells of flanks."""
         gap = self.gear.spec.gap

@@ -110,7 +110,6 @@ def report_arrays(results: Results) -> ReportArrays:
     """The arrays behind the figures."""
     cells, loop, pair = results.measured.cells, results.loop, results.pair
     grid, measured = cells.grid, cells.points
-    edges = grid.z_edges
     before = after = None
     if loop is not None:
         outside = np.where(loop.use, 1.0, np.nan)
@@ -123,8 +122,8 @@ def report_arrays(results: Results) -> ReportArrays:
         out, elsewhere_out = 1e3 * grid.flank_shape(as_made.deviation), as_made.take(lands)
     return ReportArrays(
         gear=results.gear,
-        roll_mm=grid.rolls(2)[1::2],
-        z_mm=0.5 * (edges[1:] + edges[:-1]),
+        roll_mm=grid.column_middles,
+        z_mm=grid.row_middles,
         deviation_um=1e3 * grid.flank_shape(measured.deviation),
         wear_depth_um=1e3 * results.wear.found.depth[..., grid.fillet :],
         worn=results.wear.worn,

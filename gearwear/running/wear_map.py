@@ -127,7 +127,7 @@ def wear_map(cells: Cells, side: Side, teeth: Ints, path: PathOfContact, loop: L
     known = np.stack([grid.flank_shape(cells.seen.astype(np.float64))[tooth, half] for tooth in teeth]) > 0.0
     known &= np.isfinite(values)
     depth = np.full((len(teeth), slices, strips), np.nan)
-    weights = np.zeros((slices, strips, gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
+    weights = np.zeros((slices, strips, *grid.side_shape))
     for i in range(slices):
         for j in range(strips):
             block = np.ix_(np.arange(len(teeth)), row == i, strip == j)

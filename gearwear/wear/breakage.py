@@ -481,7 +481,7 @@ def _places_about(gear: Gear, tooth: int, stretch: Segment, some: Floats) -> tup
 
 def _flank_places(grid: CellGrid, tooth: int) -> Floats:
     """Places just under the middles of a tooth's flank cells, left first, then row by row."""
-    roll, z = grid.rolls(2)[1::2], 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
+    roll, z = grid.column_middles, grid.row_middles
     half, row, column = (a.ravel() for a in np.indices((2, grid.rows, grid.flank)))
     at = flank_points(grid.gear, np.full(len(half), tooth), np.array(Side)[half], roll[column], z[row])
     return np.asarray(at.position - INSIDE * grid.gear.transverse_module * at.normal, dtype=np.float64)
@@ -490,8 +490,8 @@ def _flank_places(grid: CellGrid, tooth: int) -> Floats:
 def without_broken(depth: Floats, broken: tuple[Broken, ...], grid: CellGrid) -> Floats:
     """Depths (…, teeth, 2, rows, columns) with the flanks of what is broken off drawn back to the middle of the tooth: nothing carries there."""
     result, gear = depth.copy(), grid.gear
-    radius = np.hypot(gear.base_radius, grid.rolls(2)[1::2])
-    middle = gear.base_radius * gear.base_helix_cosine * gear.half_angle(radius)
+    radius = np.hypot(gear.base_radius, grid.column_middles)
+    middle = gear.normal_lever * gear.half_angle(radius)
     for piece in broken:
         flank = result[..., piece.tooth, :, :, grid.fillet :]
         flank[...] = np.where(piece.flank_gone, middle, flank)

@@ -141,7 +141,7 @@ def _zones_of_halves(grid: CellGrid, common: Bools, reach: float) -> Bools:
     """As `end_zone`, at both ends of each half of a double helical gear."""
     edges = grid.z_edges
     zone: Bools = np.zeros_like(common)
-    middle = (0.5 * (edges[1:] + edges[:-1]))[:, None]
+    middle = grid.row_middles[:, None]
     for half in segments(grid.gear):
         in_half: Bools = np.asarray(common & ((middle > half.low) & (middle < half.high)), dtype=np.bool_)
         low = edges[np.argmax(in_half, axis=1)][:, None, :]

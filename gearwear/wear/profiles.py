@@ -37,13 +37,9 @@ def node_radii(grid: CellGrid, parts: int = STEPS_PER_COLUMN) -> Floats:
     The worn involute may end at the form circle; on an undercut gear at the base circle, with `STRIP_NODES` nodes from there to the form circle.
     """
     gear = grid.gear
-    below = np.concatenate([[gear.root_radius], _fillet_centres(grid), _strip(gear)])
+    below = np.concatenate([[gear.root_radius], grid.fillet_middles, _strip(gear)])
     flank = np.hypot(grid.rolls(parts)[1:-1], gear.base_radius)
     return np.concatenate([np.unique(below)[:: gear.orientation], [gear.form_radius], flank, [gear.flank_end_radius]])
-
-
-def _fillet_centres(grid: CellGrid) -> Floats:
-    return np.asarray(0.5 * (grid.fillet_radius[1:] + grid.fillet_radius[:-1]), dtype=np.float64)
 
 
 def _strip(gear: Gear) -> Floats:
@@ -73,8 +69,7 @@ def _nodes_between(grid: CellGrid, rows: Floats) -> Floats:
 
 
 def _row_heights(grid: CellGrid, rows: slice, segment: Segment) -> Floats:
-    edges = grid.z_edges
-    return np.concatenate([[segment.low], (0.5 * (edges[1:] + edges[:-1]))[rows], [segment.high]])
+    return np.concatenate([[segment.low], grid.row_middles[rows], [segment.high]])
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,8 +159,8 @@ def _to_ends(grid: CellGrid, turn: Floats, rows: Floats) -> Floats:
     `rows` are the heights (mm) of its lower end, its rows and its upper end.
     """
     if turn.shape[2] > 1:
-        low = _continued(turn[:, :, 0], turn[:, :, 1], -0.5, 0.0, 1.0)
-        high = _continued(turn[:, :, -1], turn[:, :, -2], -0.5, 0.0, 1.0)
+        low = _continued(turn[:, :, 0], turn[:, :, 1])
+        high = _continued(turn[:, :, -1], turn[:, :, -2])
     else:
         low = high = turn[:, :, 0]
     turn = np.concatenate([low[:, :, None], turn, high[:, :, None]], axis=2)
@@ -195,7 +190,7 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
 
 def _fillet_turn(grid: CellGrid) -> Floats:
     """Turn (rad) of the fillet's cells, 1 / (r |n · e_θ| cos γ) of their depth on the trochoid, n in the section and γ its lean in space."""
-    gear, centres = grid.gear, _fillet_centres(grid)
+    gear, centres = grid.gear, grid.fillet_middles
     phi = gear.fillet_phi(centres)
     lever = np.abs(gear.root_curve.lever(phi)) / centres
     leaning = normal_lean(gear, gear.root_curve.lever(phi))[0]
@@ -205,7 +200,7 @@ def _fillet_turn(grid: CellGrid) -> Floats:
 def _on_fillet(grid: CellGrid, turn: Floats, radius: Floats) -> Floats:
     """The fillet cells' turn at radii below the form circle: straight between their centres, as the last one above it, none at the root."""
     way = grid.gear.orientation
-    place = np.interp(way * radius, way * _fillet_centres(grid), np.arange(grid.fillet))
+    place = np.interp(way * radius, way * grid.fillet_middles, np.arange(grid.fillet))
     low = np.minimum(place.astype(np.int64), grid.fillet - 2)
     result = turn[..., low] + (place - low) * (turn[..., low + 1] - turn[..., low])
     result[..., 0] = 0.0
@@ -264,9 +259,9 @@ def without_added_metal(depth: Floats, area: Floats) -> Floats:
     return result
 
 
-def _continued(near: Floats, next_: Floats, at: float, near_at: float, next_at: float) -> Floats:
-    """Linear continuation from two columns to a third; never past zero, and flat where the nearest shows no wear."""
-    value = near + (near - next_) * (at - near_at) / (near_at - next_at)
+def _continued(near: Floats, next_: Floats) -> Floats:
+    """On from two rows to the end half a row off, straight; never past zero, and flat where the nearest shows no wear."""
+    value = near + 0.5 * (near - next_)
     return np.where(near > 0.0, np.clip(value, 0.0, 2.0 * near), np.where(near < 0.0, near, 0.0))
 
 

@@ -245,7 +245,7 @@ def find_wear(
         Whether to work out how well volumes and depths are known, and what wear too faint to be found may come to; without, they are nan.
     """
     if gone is None:
-        gone = np.zeros((cells.grid.gear.teeth, len(Side), cells.grid.rows, cells.grid.fillet + cells.grid.flank), dtype=bool)
+        gone = np.zeros(cells.grid.side_shape, dtype=bool)
     laid = lay_flat(cells.without(cells.grid.on_cells(gone)) if gone.any() else cells, noise, loop, worn)
     places = standing_out(laid, noise, loop, worn, gone)
     cells, sheets = laid.cells, laid.sheets

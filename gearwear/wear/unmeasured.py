@@ -40,7 +40,7 @@ def thinnest_unmeasured(thickness: SectionThickness, wear: Wear, grid: CellGrid,
     arc, as_made, z, turn = thickness.arc, thickness.as_made, thickness.z, thickness.turn
     column = grid.fillet + int(grid.flank_column(roll))
     about = slice(max(column - ABOUT // 2, grid.fillet), column + ABOUT // 2 + 1)
-    heights, found = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1]), list[ThinnestTooth]()
+    heights, found = grid.row_middles, list[ThinnestTooth]()
     for tooth in sorted({region.tooth for region in wear.regions}):
         if np.isfinite(arc[tooth]).mean() >= MEASURED or not np.isfinite(as_made[tooth]).any():
             continue

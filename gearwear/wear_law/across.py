@@ -112,13 +112,13 @@ def wear_across_face(cells: Cells, half: int, teeth: Ints, loop: Loop | None, no
     column = (seen * lost).sum(axis=(0, 1)) / np.maximum(seen.sum(axis=(0, 1)), 1.0)
     usual = np.where(number > 0.0, usual, column)
     depth = np.where(seen > 0.0, lost, usual).mean(axis=2)
-    z = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])[rows]
+    z = grid.row_middles[rows]
     place = z / grid.gear.face_width - 0.5
     basis = np.column_stack([np.ones_like(place), place, 6.0 * place**2 - 0.5])
     solve = np.linalg.pinv(basis)
     each = depth @ solve.T
     # The rows, the lean and the bow as sums over cells, for what all neighbouring cells share.
-    row = np.zeros((len(z), grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
+    row = np.zeros((len(z), *grid.side_shape))
     for i, at in enumerate(np.flatnonzero(rows)):
         row[i, teeth, half, at, grid.fillet :] = 1.0 / (count * grid.flank)
     covariance = noise_covariance(cells, noise, loop, row)

@@ -277,7 +277,7 @@ def tooth_profiles(
 def _column_errors(cells: Cells, half: int, teeth: Ints, seen: Floats, loop: Loop | None, noise: float) -> Floats:
     """Covariance, mm², of mean depths over columns of cells by all that neighbouring places share: not the noise of the points."""
     grid = cells.grid
-    weights = np.zeros((grid.flank, grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
+    weights = np.zeros((grid.flank, *grid.side_shape))
     share = seen / np.maximum(seen.sum(axis=(0, 1)), 1.0)
     for column in range(grid.flank):
         weights[column, teeth, half, :, grid.fillet + column] = share[..., column]

@@ -18,7 +18,7 @@ ROLL = FILLET + 4
 
 def worn(depths, measured=(), stds=0.01):
     """The thinnest of four teeth 6 mm thick, some of them worn by so much (mm) on one side or both over rows 4 to 8, of which some have sections."""
-    grid = SimpleNamespace(fillet=FILLET, flank_column=lambda roll: 4, z_edges=np.linspace(0.0, 12.0, ROWS + 1))
+    grid = SimpleNamespace(fillet=FILLET, flank_column=lambda roll: 4, row_middles=np.linspace(0.5, 11.5, ROWS))
     depth, regions = np.zeros((4, 2, ROWS, FILLET + FLANK)), []
     for (tooth, side), deep in depths.items():
         depth[tooth, side.index, 4:8, FILLET:] = deep

@@ -90,9 +90,8 @@ def _as_table(pa: Any, located: SurfacePoints, corrected: Floats) -> Any:
 def write_topography(results: Results, folder: Path) -> list[str]:
     """``topography.csv``: every flank as a grid of cells, with the number of points behind each."""
     raw, grid = results.measured.cells, results.measured.cells.grid
-    roll = grid.rolls(2)[1::2]
+    roll, height = grid.column_middles, grid.row_middles
     radius = np.hypot(roll, results.gear.base_radius)
-    height = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
     maps = [
         1e3 * grid.flank_shape(raw.points.deviation),
         1e3 * grid.flank_shape(results.measured.corrected.points.deviation),
