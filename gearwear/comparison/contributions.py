@@ -10,6 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, SurfacePoints, flank_points, locate
 from gearwear.design.twist import twisted
@@ -105,14 +106,19 @@ def cell_fields(measured: MeasuredGear, effects: Iterable[PutBack], cells: Cells
     return fields
 
 
+def band_points(gear: Gear, z: Floats) -> tuple[SurfacePoints, SurfacePoints]:
+    """Points of the left and of the right flanks where thickness is measured, tooth by tooth at heights `z` (mm)."""
+    tooth, height = np.repeat(np.arange(gear.teeth), len(z)), np.tile(z, gear.teeth)
+    roll = np.full(len(tooth), gear.thickness_roll)
+    left, right = (flank_points(gear, tooth, np.full(len(tooth), side), roll, height) for side in Side)
+    return left, right
+
+
 def arc_fields(measured: MeasuredGear, effects: Iterable[PutBack], z: Floats) -> dict[str, Floats]:
     """By name, what each effect adds to the arc of a tooth in sections, (teeth, n_z) mm."""
     gear = measured.gear
-    tooth, height = np.repeat(np.arange(gear.teeth), len(z)), np.tile(z, gear.teeth)
-    roll = np.full(len(tooth), gear.thickness_roll)
-    left, right = (by_name(effects, flank_points(gear, tooth, np.full(len(tooth), side), roll, height)) for side in Side)
-    ratio = gear.arc_per_depth
-    return {name: (ratio * (left[name] + right[name])).reshape(gear.teeth, -1) for name in left}
+    left, right = (by_name(effects, points) for points in band_points(gear, z))
+    return {name: (gear.arc_per_depth * (left[name] + right[name])).reshape(gear.teeth, -1) for name in left}
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,21 +148,21 @@ def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideField
     """The effects on the tooth sides of the design; nothing where there is none."""
     loop, grid = measured.loop, measured.cells.grid
     points = side_points(grid)
-    shape = (grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank)
+    shape = grid.side_shape
     made, raw, taken, unsure = np.zeros(shape), np.zeros(shape), dict[str, Floats](), list[Floats]()
     if loop is None or not (loop.effects or loop.patterns):
         return SideFields(made, taken, raw)
     for effect in effects:
-        shown = effect.alone(points) if effect.kind in MADE else effect.shown(points)
-        unsure.append(effect.relative_std * shown.reshape(shape))
+        alone = effect.alone(points).reshape(shape)
+        shown = alone if effect.kind in MADE else effect.shown(points).reshape(shape)
+        unsure.append(effect.relative_std * shown)
         if effect.kind in MADE:
-            made = made + effect.alone(points).reshape(shape)
+            made = made + alone
         elif effect.kind in MEASURED:
-            raw = raw + effect.alone(points).reshape(shape)
-            taken[effect.name] = taken.get(effect.name, 0.0) + effect.shown(points).reshape(shape)
+            raw = raw + alone
+            taken[effect.name] = taken.get(effect.name, 0.0) + shown
     if loop.patterns:
-        cells = _pattern(loop)
-        taken[UNEXPLAINED] = grid.sides(cells)
+        taken[UNEXPLAINED] = grid.sides(_pattern(loop))
         raw = raw + taken[UNEXPLAINED]
     if not about_datum(loop):
         raw = raw + (motion_columns(points.position, points.normal) @ loop.motion).reshape(shape)
@@ -193,15 +199,12 @@ def relative_std(basis: Floats, amplitudes: Floats, covariance: Floats) -> float
 def side_points(grid: CellGrid) -> SurfacePoints:
     """Centres of all fillet and flank cells on the nominal gear, in the order of the side maps."""
     gear = grid.gear
-    low = 0.5 * (grid.fillet_radius[1:] + grid.fillet_radius[:-1])
-    roll = grid.rolls(2)[1::2]
-    middle = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
-    columns = grid.fillet + grid.flank
-    tooth, half, row, column = (a.ravel() for a in np.indices((gear.teeth, 2, grid.rows, columns)))
-    side, z = np.array(Side)[half], middle[row]
-    points = flank_points(gear, tooth, side, np.append(np.full(grid.fillet, gear.form_roll), roll)[column], z)
+    tooth, half, row, column = (a.ravel() for a in np.indices(grid.side_shape))
+    side, z = np.array(Side)[half], grid.row_middles[row]
+    roll = np.append(np.full(grid.fillet, gear.form_roll), grid.column_middles)[column]
+    points = flank_points(gear, tooth, side, roll, z)
     on_fillet = np.flatnonzero(column < grid.fillet)
-    radius = low[column[on_fillet]]
+    radius = grid.fillet_middles[column[on_fillet]]
     angle = tooth[on_fillet] * gear.pitch_angle + side[on_fillet] * gear.half_angle(radius)
     fillet = locate(twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z[on_fillet]])), gear)
     points.surface[on_fillet], points.roll[on_fillet] = FILLET, np.nan

@@ -10,9 +10,9 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change, thickness_changes
-from gearwear.comparison.contributions import PutBack
+from gearwear.comparison.contributions import PutBack, band_points
 from gearwear.comparison.measured_gear import MeasuredGear
-from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import MADE
 from gearwear.wear.hollows import find_hollows
 from gearwear.wear.regions import Wear
@@ -48,16 +48,13 @@ def corrected_thickness(measured: MeasuredGear, sections: SectionSums) -> Sectio
     along = loop.covariance.row_step ** (step * (grid.rows - grid.groove_rows) / (gear.face_width - gear.spec.gap))
     common = np.hypot(turn * sum(measured.level_std), turn * _unexplained(measured))
     result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), float(common))
-    tooth = np.repeat(np.arange(gear.teeth), len(result.z))
-    z = np.tile(result.z, gear.teeth)
-    roll = np.full(len(tooth), gear.thickness_roll)
-    flanks = [flank_points(gear, tooth, np.full(len(tooth), side), roll, z) for side in (1, -1)]
+    flanks = band_points(gear, result.z)
 
     def arc(of: Callable[[SurfacePoints], Floats]) -> Floats:
-        return np.asarray(gear.arc_per_depth * np.sum([of(flank) for flank in flanks], axis=0).reshape(gear.teeth, -1))
+        return np.asarray(turn * np.sum([of(flank) for flank in flanks], axis=0).reshape(gear.teeth, -1))
 
     other = [float(arc(partial(loop.as_other, effect)).mean()) for effect in loop.either]
-    untold = 0.0 if loop.untold is None else gear.arc_per_depth * loop.untold.level.sum(axis=1, keepdims=True)
+    untold = 0.0 if loop.untold is None else turn * loop.untold.level.sum(axis=1, keepdims=True)
     # Between the places that were measured a tooth is as thin as it was made, and no thinner for what the scanner may have done.
     return replace(
         result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE)) + untold).made_with(arc(loop.surely_made) + untold),
