@@ -400,7 +400,7 @@ def propose_design(
         found = find_candidates(
             points,
             np.concatenate(normals) if len(normals) == len(views) else None,
-            views[0].kind == "section",
+            views[0].planar,
             module,
             pressure_angle,
             None,

@@ -265,7 +265,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
 
     scan = read_one(arguments.scan, arguments.units)
     unit = factor(arguments.units)
-    planar = scan.kind == "section"
+    planar = scan.planar
     try:
         candidates = find_candidates(
             scan.points, scan.normals, planar, arguments.module, _angle(arguments), arguments.teeth,

@@ -13,9 +13,7 @@ ROOT_SURFACES = frozenset({FILLET, ROOT})
 """Fillets and the lands between them."""
 
 
-def laid_on(
-    gear: Gear, scans: Sequence[Scan], planar: bool, ignore: frozenset[int], start: PlacedScan | None = None
-) -> PlacedScan:
+def laid_on(gear: Gear, scans: Sequence[Scan], ignore: frozenset[int], start: PlacedScan | None = None) -> PlacedScan:
     """Scans on a gear.
 
     Parameters
@@ -23,14 +21,12 @@ def laid_on(
     gear : Gear
     scans : sequence of Scan
         Views of one gear.
-    planar : bool
-        True for planar sections.
     ignore : frozenset of int
         Surfaces that are no datum.
     start : PlacedScan or None
         Where they are; None: anywhere.
     """
-    return place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar, start, ignore)
+    return place([scan.points for scan in scans], gear, [scan.normals for scan in scans], scans[0].planar, start, ignore)
 
 
 def unstated_root(gear: Gear) -> frozenset[int]:

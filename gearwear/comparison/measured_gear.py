@@ -174,7 +174,7 @@ class MeasuredGear(Card):
     @property
     def planar(self) -> bool:
         """True for a planar section."""
-        return self.scans[0].kind == "section"
+        return self.scans[0].planar
 
     @property
     def worn_sides(self) -> frozenset[Side]:
@@ -237,7 +237,7 @@ class MeasuredGear(Card):
     @property
     def points(self) -> int:
         """Points read."""
-        return sum(len(scan) + sum(scan.rejected.values()) for scan in self.scans)
+        return sum(scan.read for scan in self.scans)
 
     @property
     def used(self) -> int:
@@ -377,22 +377,21 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     check_streamed(scans, design.datum)
     scans, design = calibrated(scans, design)
     scans = at_20_degrees(scans, design.datum)
-    planar = scans[0].kind == "section"
-    if planar:
+    if scans[0].planar:
         for gear in design.gears.values():
             refuse(gear, "a planar section", Toothing.DOUBLE_HELICAL)
-    name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
+    name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans))
     if grid is None:
-        placed, edge = on_its_tips(placed, scans, drawn, planar)
+        placed, edge = on_its_tips(placed, scans, drawn)
     else:
-        placed, edge = on_tips_of(grid.gear, placed, scans, drawn, planar)
-    placed, root = on_its_root(placed, scans, edge.gear, planar)
+        placed, edge = on_tips_of(grid.gear, placed, scans, drawn)
+    placed, root = on_its_root(placed, scans, edge.gear)
     motion, mark = tooth_1_of(design.datum, scans, placed, root.gear)
     if motion is not None:
-        placed = _laid(placed, scans, root, planar, motion)
+        placed = _laid(placed, scans, root, motion)
     if design.datum.leaves_out:
         scans = without_ignored(scans, placed, root.gear, design.datum)
-        placed = _laid(placed, scans, root, planar, Pose.identity())
+        placed = _laid(placed, scans, root, Pose.identity())
     return replace(_in_cells(design, scans, name, placed, root, edge, grid), mark=mark)
 
 
@@ -407,15 +406,15 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
     motion : Pose
         A symmetry of the gear, in the design frame.
     """
-    placed = _laid(measured.placed, measured.scans, measured.root, measured.planar, motion)
+    placed = _laid(measured.placed, measured.scans, measured.root, motion)
     again = _in_cells(
         measured.design, measured.scans, measured.part, placed, measured.root, measured.tip_edge, measured.first.grid
     )
     return replace(again, mark=measured.mark)
 
 
-def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, motion: Pose) -> PlacedScan:
-    return laid_on(root.gear, scans, planar, no_datum(root), turned(placed, motion))
+def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, motion: Pose) -> PlacedScan:
+    return laid_on(root.gear, scans, no_datum(root), turned(placed, motion))
 
 
 def _in_cells(
@@ -428,7 +427,7 @@ def _in_cells(
     grid: CellGrid | None,
 ) -> MeasuredGear:
     """A placed scan without what is broken off, in cells."""
-    gear, planar = root.gear, scans[0].kind == "section"
+    gear, planar = root.gear, scans[0].planar
     on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
     chunks = scans[0].chunks
     if chunks is not None:

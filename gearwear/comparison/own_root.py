@@ -17,7 +17,7 @@ ROOT_PASSES = 2
 """A root found in a pose that the wrong root has bent is looked for once more in the better one."""
 
 
-def on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, Root]:
+def on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear) -> tuple[PlacedScan, Root]:
     """The scan on the design with the root that it shows; a root that nothing generates is no datum.
 
     Parameters
@@ -28,15 +28,13 @@ def on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: b
         Views of one gear.
     gear : Gear
         The design.
-    planar : bool
-        True for planar sections.
     """
-    root = _of_whole_teeth(placed, gear, planar)
+    root = _of_whole_teeth(placed, gear, scans[0].planar)
     for _ in range(ROOT_PASSES):
         if root.fits_design:
             break
-        placed = laid_on(root.gear, scans, planar, no_datum(root), placed)
-        root = _of_whole_teeth(placed, gear, planar)
+        placed = laid_on(root.gear, scans, no_datum(root), placed)
+        root = _of_whole_teeth(placed, gear, scans[0].planar)
     return placed, root
 
 

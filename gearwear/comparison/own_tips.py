@@ -14,7 +14,7 @@ EDGE_PASSES = 2
 """An edge found in a pose that its points have bent is looked for once more in the better one."""
 
 
-def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, TipEdge]:
+def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear) -> tuple[PlacedScan, TipEdge]:
     """The scan on the design with the edges between flanks and tips that it shows.
 
     Parameters
@@ -25,14 +25,12 @@ def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: b
         Views of one gear.
     gear : Gear
         The design.
-    planar : bool
-        True for planar sections.
     """
     edge = fit_tip_edge(placed.located, gear, placed.registration.noise)
     for _ in range(EDGE_PASSES):
         if edge.fits_design:
             break
-        placed = laid_on(edge.gear, scans, planar, unstated_root(edge.gear), placed)
+        placed = laid_on(edge.gear, scans, unstated_root(edge.gear), placed)
         again = fit_tip_edge(placed.located, gear, placed.registration.noise)
         if again.fits_design or again.height == edge.height:
             break
@@ -40,10 +38,10 @@ def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: b
     return placed, edge
 
 
-def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, TipEdge]:
+def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gear) -> tuple[PlacedScan, TipEdge]:
     """The same with the edges of another gear, as the same one has after wear."""
     edge = {key: getattr(other.spec, key) for key in ("tip_chamfer", "tip_chamfer_land", "tip_rounding")}
     if all(getattr(gear.spec, key) == value for key, value in edge.items()):
         return placed, TipEdge(gear)
     own = gear.recut(**edge)
-    return laid_on(own, scans, planar, unstated_root(own), placed), TipEdge(own, other.spec.tip_chamfer)
+    return laid_on(own, scans, unstated_root(own), placed), TipEdge(own, other.spec.tip_chamfer)

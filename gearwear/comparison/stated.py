@@ -24,16 +24,15 @@ LEAST_TEETH = 3
 """That must be left."""
 
 
-def at_20_degrees(scans: Scan | Sequence[Scan], datum: DatumSpec) -> tuple[Scan, ...]:
+def at_20_degrees(scans: tuple[Scan, ...], datum: DatumSpec) -> tuple[Scan, ...]:
     """The scans with their lengths referred to 20 °C; as they are where no temperature is stated.
 
     A part of one material that is warm throughout is larger by one factor: ``l(20 °C) = l / (1 + α (T − 20 °C))``.
     """
-    given = (scans,) if isinstance(scans, Scan) else tuple(scans)
     if datum.scale == 1.0:
-        return given
-    chunks = [None if scan.chunks is None else scan.chunks.scaled(datum.scale) for scan in given]
-    return tuple(replace(scan, points=datum.scale * scan.points, chunks=part) for scan, part in zip(given, chunks, strict=True))
+        return scans
+    chunks = [None if scan.chunks is None else scan.chunks.scaled(datum.scale) for scan in scans]
+    return tuple(replace(scan, points=datum.scale * scan.points, chunks=part) for scan, part in zip(scans, chunks, strict=True))
 
 
 def check_streamed(scans: Sequence[Scan], datum: DatumSpec) -> None:
@@ -60,7 +59,7 @@ def tooth_1_of(datum: DatumSpec, scans: Sequence[Scan], placed: PlacedScan, gear
     if datum.mark is None:
         return None, None
     try:
-        return number_by_mark(placed.measured, gear, datum.mark, scans[0].kind == "section")
+        return number_by_mark(placed.measured, gear, datum.mark, scans[0].planar)
     except InputError as error:
         raise InputError(": ".join([*scans[0].files[:1], str(error)])) from None
 

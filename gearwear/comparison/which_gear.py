@@ -29,7 +29,7 @@ def by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
     return sorted(design.gears, key=lambda name: abs(np.log(max(reach, 1e-300) / outer_diameter(design.gears[name]))))
 
 
-def placed_as(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, Gear, PlacedScan]:
+def placed_as(design: Design, scans: Sequence[Scan], parts: Sequence[str]) -> tuple[str, Gear, PlacedScan]:
     """The first of these parts that the scans fit, its gear as wide as they are, and how they lie on it; else what kept them from the first."""
     refused = []
     for name in parts:
@@ -37,12 +37,12 @@ def placed_as(design: Design, scans: Sequence[Scan], parts: Sequence[str], plana
         try:
             for scan in scans:
                 check_size(scan, gear)
-            placed = laid_on(gear, scans, planar, unstated_root(gear))
+            placed = laid_on(gear, scans, unstated_root(gear))
             width = check_gear(placed, gear)
             if width == gear.face_width:
                 return name, gear, placed
             gear = Gear.from_spec(replace(gear.spec, face_width=width))
-            return name, gear, laid_on(gear, scans, planar, unstated_root(gear))
+            return name, gear, laid_on(gear, scans, unstated_root(gear))
         except InputError as error:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])

@@ -79,7 +79,7 @@ def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm", stream: b
     if len(paths) == 1:
         return [read_one(paths[0], units, stream)]
     scans = [replace(scan, view=scan.view + np.int8(i)) for i, scan in enumerate(_all(paths, units))]
-    sections = [scan for scan in scans if scan.kind == "section"]
+    sections = [scan for scan in scans if scan.planar]
     if sections and len(sections) < len(scans):
         raise InputError(f"{sections[0].files[0]} is a planar section and another scan is not: views of one kind would be right")
     return scans

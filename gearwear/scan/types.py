@@ -58,6 +58,16 @@ class Scan(Card):
     def __len__(self) -> int:
         return len(self.points) if self.chunks is None else len(self.chunks)
 
+    @property
+    def planar(self) -> bool:
+        """Whether it is a planar section."""
+        return self.kind == "section"
+
+    @property
+    def read(self) -> int:
+        """Points read: those that are there and those taken out."""
+        return len(self) + sum(self.rejected.values())
+
     def headline(self) -> str:
         what = {"cloud": "points", "triangles": "vertices of triangles", "section": "points of a planar section"}[self.kind]
         return f"{len(self):,} {what} from {', '.join(Path(file).name for file in self.files)}"

@@ -69,7 +69,7 @@ def check_size(scan: Scan, gear: Gear) -> None:
     """
     measured = extents(scan)
     diameter, width = outer_diameter(gear), gear.face_width
-    flat = scan.kind == "section"
+    flat = scan.planar
     whole = np.array([diameter, diameter] if flat else sorted([diameter, diameter, width], reverse=True))
     ratio = measured[: len(whole)] / whole
     if not ratio[0] > 0.0:

@@ -19,6 +19,6 @@ def views_of(scan: Scan | Sequence[Scan]) -> tuple[Scan, ...]:
     views = (scan,) if isinstance(scan, Scan) else tuple(scan)
     if not views:
         raise InputError("no scan is given; what gw.read_scan returns would be right")
-    if len({view.kind == "section" for view in views}) > 1:
+    if len({view.planar for view in views}) > 1:
         raise InputError("some views are planar sections, others are not; views of one kind would be right")
     return views

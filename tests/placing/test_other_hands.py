@@ -43,7 +43,7 @@ def test_it_is_refused_by_name(name):
     view = np.zeros(len(points), dtype=np.int64)
     scan = Scan(points, None, None, "cloud", ("scan.xyz",), {}, view)
     with pytest.raises(NotThisGear) as refused:
-        placed_as(drawn, [scan], ["gear"], False)
+        placed_as(drawn, [scan], ["gear"])
     assert words in str(refused.value) and "\n" not in str(refused.value)
 
 

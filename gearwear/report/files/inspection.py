@@ -70,7 +70,7 @@ def inspection_record(
         "scan": {
             "file": scans[0].files[0], "files": [file for scan in scans for file in scan.files],
             "sha256": [digest for scan in scans for digest in scan.sha256],
-            "points": sum(len(scan) + sum(scan.rejected.values()) for scan in scans), "kind": scans[0].kind,
+            "points": sum(scan.read for scan in scans), "kind": scans[0].kind,
         },
         "registration": {
             "converged": registration.converged, "datum": list(registration.datum.surfaces),
