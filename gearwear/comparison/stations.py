@@ -60,7 +60,7 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
 DRAWS = 64
 """Worn surfaces drawn to see how far their scatter moves the contact."""
-NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
+NO_LOAD = "the design states no [load]"
 
 
 @on_one_thread

@@ -287,20 +287,24 @@ class WearFit(Card):
         if not np.isfinite(share):
             return f"the mean depth of {mean:.1f} µm does not stand out from its errors: nothing for a law to explain"
         said = {
-            "sliding": f"consistent with sliding wear after Archard (load sharing: {self.sharing})",
-            "uniform": "with a uniform loss",
-            "step": "with more loss where one pair carries alone",
+            "sliding": f"is consistent with sliding wear after Archard (load sharing: {self.sharing})",
+            "uniform": "is consistent with a uniform loss",
+            "step": "is consistent with more loss where one pair carries alone",
         }
         parts = [f"{_percent(*self.parts[name])} {said[name]}" for name in TERMS if self.parts[name][0] >= LEAST_PART]
         errors = ", errors taken off" if self.known else ""
-        text = f"the curve follows {_percent(share, std)} of the measured wear (mean square of depth{errors}), with load sharing assumed, not known"
+        text = (
+            f"the law explains {_percent(share, std)} of the measured wear (by the mean square of its depth{errors});"
+            " how the teeth share the load is assumed, not known"
+        )
         if parts:
-            text += f"; of the depth by it, {mean:.1f} µm on average, {', '.join(parts)}"
+            text += f". Of its mean depth of {mean:.1f} µm, {', '.join(parts)}"
         text += self._coefficient_words
         deepest = float(self.depth.max())
         if deepest > _MILD_WEAR_DEPTH:
             text += (
-                f"; deepest {1e3 * deepest:.0f} µm: beyond the mild wear that the law is for, with the sliding of unworn flanks"
+                f". At its deepest the mean flank has lost {1e3 * deepest:.0f} µm: more than the mild wear that the law, with the sliding of unworn"
+                " flanks, is made for"
             )
         return text
 
@@ -311,8 +315,8 @@ class WearFit(Card):
         if not (there.sliding > 0.0 or whole > 0.0):
             return ""
         if not there.sliding > 0.0:
-            return f"; its coefficient A, {1e3 * whole:.1f} µm, rests on the load sharing assumed: single contact alone does not tell it"
-        text = f"; its coefficient A is {1e3 * whole:.1f} µm, and {1e3 * there.sliding:.1f} ± {1e3 * there.sliding_std:.1f} µm by single contact alone"
+            return f". Its coefficient A, {1e3 * whole:.1f} µm, rests on the load sharing assumed: single contact alone does not tell it"
+        text = f". Its coefficient A is {1e3 * whole:.1f} µm, and {1e3 * there.sliding:.1f} ± {1e3 * there.sliding_std:.1f} µm by single contact alone"
         off = abs(whole / there.sliding - 1.0)
         # Both are of the same teeth: what these scatter by tells nothing of a difference.
         by_mean = self._single_contact(self.depth[None])

@@ -295,3 +295,14 @@ def test_outline_is_closed_and_coloured_where_seen(axis):
 def test_contact_map_runs_from_never_to_always(axis, arrays):
     assert figures.contact_map(axis, arrays.contact_share) is axis
     assert axis.images[0].get_clim() == (0.0, 1.0)
+
+
+def test_the_least_thickness_has_a_whisker_of_two_standard_deviations(axis):
+    """A triangle alone three micrometres below the design looked worn, of a least that is known to ± 2.5 µm."""
+    thickness = fake_results().wear.thickness
+    figures.thickness_per_tooth(axis, thickness)
+    whiskers = {round(path.vertices[0, 0]): np.ptp(path.vertices[:, 1]) for path in axis.collections[1].get_paths()}
+    for tooth in thickness.teeth():
+        if tooth.tooth + 1 in whiskers:
+            assert whiskers[tooth.tooth + 1] == pytest.approx(4.0 * tooth.least_std)
+    assert len(whiskers) >= 9

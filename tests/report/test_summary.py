@@ -20,7 +20,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report.words.terminal import ASCII, lines, print_summary
-from gearwear.report.words.verdict import key_figures, subject, verdict
+from gearwear.report.words.verdict import doubts, key_figures, subject, verdict
 from gearwear.wear.breakage import Broken
 from tests.report.fake import bare_results, changed, fake_results, real_results
 
@@ -107,7 +107,7 @@ def test_limits_of_the_volume_hold_its_own_95_percent():
 def test_a_range_hardly_wider_than_the_deviation_says_comes_after_it():
     results = changed(fake_results(), "wear.undecided", ((89.8, 0.5),))
     said = verdict(results).replace("\u202f", " ").replace("\u00a0", " ")
-    assert said.startswith("90.80 ± 0.51 mm³ of metal is gone") and "it may be 89 to 92 mm³" in said
+    assert said.startswith("90.80 ± 0.51 mm³ of metal is gone") and "the loss may be 89 to 92 mm³" in said
 
 
 OPENED = {
@@ -134,7 +134,7 @@ def test_whatever_opens_the_range_is_told_with_it(reason):
     assert [low, high] == pytest.approx([float(x) for x in range_.split(" to ")], abs=0.5)
     said, figure = verdict(results).replace("\u202f", " ").replace("\u00a0", " "), key_figures(results)[0]
     assert said.startswith(f"{range_} mm³ of metal is gone from 3 left flanks")
-    assert f"the scan does not decide: {likeliest} 90.80 ± 0.51 mm³" in said
+    assert "the scan does not decide " in said and f": {likeliest} 90.80 ± 0.51 mm³" in said
     assert figure.value.replace("\u202f", " ") == f"{range_} mm³" and reason in figure.note
 
 
@@ -168,7 +168,7 @@ def test_what_faint_wear_may_come_to_is_told_of_a_gear_without_any():
     results = changed(changed(results, "wear.found.volume_std", 0.0), "wear.found.faint", 3.1)
     assert results.volume_range[1] == pytest.approx(3.1)
     for text in (verdict(results), key_figures(results)[0].note):
-        assert "with wear too shallow to be found it may be up to 3.1 mm³" in text.replace("\u202f", " ")
+        assert "with wear too shallow to be found the loss may be up to 3.1 mm³" in text.replace("\u202f", " ")
 
 
 def test_without_a_region_the_limits_stand_beside_the_nought():
@@ -306,3 +306,18 @@ def test_the_verdict_begins_with_what_is_broken_off(kinds, said):
     unworn = changed(results, "wear.found.regions", ())
     assert "nothing else on the flanks" in verdict(unworn)
     assert "broken" not in verdict(real_results())
+
+
+@pytest.mark.parametrize(("std", "said"), [(30.0, "known to ± 33 % only"), (88.0, "known to ± 97 % only"), (1.0, None)])
+def test_an_uncertain_volume_is_not_called_known_to_97_per_cent(std, said):
+    """88 of 90.8 mm³ are 97 %: "known to 97 % only" reads as if three per cent were open."""
+    told = " ".join(doubts(changed(fake_results(), "wear.found.volume_std", std))).replace("\u202f", " ")
+    assert said in told if said else "% only" not in told
+
+
+def test_no_wear_is_told_against_what_is_left_of_the_scan_where_that_is_more_than_its_noise():
+    """The scan scatters by 2 µm and is 30 µm off all that was fitted to it: wear of 20 µm does not stand out, "of a scatter of 2 µm" or not."""
+    results = changed(changed(bare_results(), "wear.found.regions", ()), "measured.loop", fake_results().loop)
+    for left, said in ((0.030, "the 30 µm RMS by which the scan is off the design"), (0.003, "the scan's scatter of 2.0 µm")):
+        loop = replace(results.loop, noise=0.002, rms_after=left)
+        assert said in verdict(changed(results, "measured.loop", loop)).replace("\u202f", " ")

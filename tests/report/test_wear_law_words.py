@@ -51,9 +51,9 @@ def test_the_record_holds_fit_profile_and_forecast():
 def test_words_say_who_is_in_it_and_how_far_it_reaches():
     law = study(**LIMITS)
     said = law_words(law)
-    assert said.startswith("Wear law, fitted to the mean of 3 left flanks: the curve follows ")
-    assert "load sharing assumed, not known; of the depth" in said and "8.0 ± 0.1 µm by single contact alone" in said
-    assert "consistent with sliding wear" in said
+    assert said.startswith("Wear law, fitted to the mean of 3 left flanks: the law explains ")
+    assert "share the load is assumed, not known. Of its mean depth" in said and "8.0 ± 0.1 µm by single contact alone" in said
+    assert "is consistent with sliding wear" in said
     assert "Tooth 2 lost much more or less than the others and is not in it." in said
     assert "lost 44\u202f% of the worn volume" in said
     depth, thickness, _ = left_words(law)

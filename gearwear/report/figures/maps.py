@@ -31,6 +31,10 @@ STYLE: dict[Any, Any] = {
 """matplotlib settings for all figures of the report (`matplotlib.rc_context(STYLE)`)."""
 
 
+WHISKER = 2.0
+"""Standard deviations that a whisker of the least thickness reaches."""
+
+
 def teeth_in_a_row(teeth: int, most: int = 16) -> int:
     """Teeth side by side in an unrolled map: rows of even length, none longer than `most`.
 
@@ -273,13 +277,16 @@ def thickness_per_tooth(axis: Axes, thickness: SectionThickness, place: str = "a
     """Arc thickness, `place` says where: the mean over the face and the least, tooth by tooth, against the design."""
     teeth = thickness.teeth()
     tooth = np.array([tooth.tooth + 1.0 for tooth in teeth])
-    mean, least, nominal = (np.array([getattr(tooth, name) for tooth in teeth]) for name in ("mean", "least", "nominal"))
+    names = ("mean", "least", "nominal", "least_std")
+    mean, least, nominal, std = (np.array([getattr(tooth, name) for tooth in teeth]) for name in names)
+    whisker = WHISKER * np.nan_to_num(std)
     axis.plot(tooth, nominal, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
-    many = np.concatenate([least, mean, nominal])
+    many = np.concatenate([least - whisker, least + whisker, mean, nominal])
     low, high = usual_range(many[np.isfinite(many)])
     below = least < low  # they are drawn to the edge, with their value beside
     axis.vlines(tooth, np.maximum(least, low), np.maximum(mean, low), color=LOST, lw=3.0, alpha=0.55)
     axis.plot(tooth, mean, "o", color=INK, ms=4.5, label="mean over the face width")
+    axis.vlines(tooth[~below], (least - whisker)[~below], (least + whisker)[~below], color=LOST, lw=0.9)
     axis.plot(tooth, np.where(below, np.nan, least), "v", color=LOST, ms=5, label="least, any z")
     margin = max(0.08 * (high - low), 0.002)
     for x, y in zip(tooth[below], least[below], strict=True):

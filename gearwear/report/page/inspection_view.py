@@ -14,6 +14,9 @@ from gearwear.report.page.view import PageView, address
 from gearwear.report.words.verdict import KeyFigure
 from gearwear.scan.types import Scan
 
+NO_CLASS = "not told: not every deviation is resolved, or was seen"
+"""What stands for the class of the gear where no class is met for certain."""
+
 
 def inspection_view(
     design: Design,
@@ -44,8 +47,12 @@ def inspection_view(
         How it was asked for; empty from Python.
     """
     asked = inspection.settings.required_class
-    coarser = any(finding.grade.verdict is Verdict.COARSER for finding in inspection.findings)
-    none = str(Verdict.COARSER) if coarser else "none as a whole"
+    found = {finding.grade.verdict for finding in inspection.findings}
+    none = NO_CLASS
+    if Verdict.EXCEEDS in found:
+        none = f"not class {asked}: a deviation exceeds its tolerance"
+    elif Verdict.COARSER in found:
+        none = str(Verdict.COARSER)
     graded = KeyFigure(
         "Class of the gear", none if inspection.iso_class is None else str(inspection.iso_class), str(inspection.settings.edition)
     )

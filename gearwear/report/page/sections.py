@@ -45,6 +45,11 @@ from gearwear.scan.types import Scan
 from gearwear.wear.regions import UNIT, WearRegion
 from gearwear.wear_law.study import WearStudy
 
+SURFACES = {
+    "flank": "flanks", "flank_left": "left flanks", "flank_right": "right flanks", "fillet": "fillets", "tip": "tips", "root": "roots",
+    "end_low": "lower end, z = 0", "end_high": "upper end",
+}  # fmt: skip
+"""Surfaces as the page calls them."""
 KINDS = {"cloud": "point cloud", "triangles": "triangles", "section": "planar section"}
 
 
@@ -76,7 +81,8 @@ def _wear_words(results: Results) -> str:
             without = with_std(before.volume, before.volume_std, unit)
             text.append(f"without taking the effects of scan and manufacture out first it would have been {without}")
     if worn.limit > 0.0 and len(results.measured.worn_sides) < len(Side):  # where all flanks are worn, none shows what scatter is
-        text.append(f"wear is seen from a mean depth of about {significant(1e3 * worn.limit, 2)}{SPACE}µm on")
+        alone = f"a patch of wear on one flank is seen from a mean depth of about {significant(1e3 * worn.limit, 2)}{SPACE}µm on"
+        text.append(f"{alone}, what all flanks of a side have lost from less" if results.measured.worn_sides else alone)
     against = "the unworn gear's scan" if results.before_files else "design and manufacture effects"
     text.append(f"it is measured against {against}")
     if boolean is not None:
@@ -192,8 +198,9 @@ def thickness(results: Results) -> Section:
     )
     place = thickness_place(results.gear)
     text = (
-        f"{lost}; its least is {least} mm by itself, designed are {number(tooth.nominal, 3)} mm. Of many teeth one is thinnest by chance: the thinnest"
-        f" tooth above allows for that. Thickness is the arc {place}, without what the scanner added; a loss is against the gear as made."
+        f"{lost}; taken by itself it is {least} mm thick where it is thinnest, designed is {number(tooth.nominal, 3)} mm. The thinnest tooth at the top"
+        " of the page may differ a little: of many noisy values the least is too small by chance, and that is allowed for there. Thickness is the arc"
+        f" {place}, without what the scanner added; a loss is against the gear as made."
     )
     head = ("tooth", "design, mm", "mean, mm", "least, mm", "greatest loss, mm", "± of one section, mm", "least at z, mm")
     rows = [
@@ -306,13 +313,13 @@ def paper(results: Results) -> Section | None:
     )
     rows = (
         ("B′, loss of thickness, mm", published.thickness_loss),
-        ("B, play put into the formula, mm", published.backlash),
-        ("Δc, change of centre distance, mm", published.centre_distance_change),
+        ("B, backlash put into the formula, mm", published.backlash),
+        ("Δc = c − c′, as printed, mm", published.centre_distance_change),
         ("c′, centre distance, mm", published.centre_distance),
         ("θ′, pressure angle, °", math.degrees(published.pressure_angle)),
         ("r₁′, pitch radius of the pinion, mm", published.pitch_radius_pinion),
         ("r₂′, pitch radius of the gear, mm", published.pitch_radius_gear),
-        ("l, of the paper's formula for contact, design, mm", published.contact_length_design),
+        ("l, length of contact by the paper's formula, design, mm", published.contact_length_design),
         ("l′, the same at c′, mm", published.contact_length_worn),
     )
     table = Table(("by the paper's formulas", "value"), [(label, number(value, 4)) for label, value in rows])
@@ -340,7 +347,8 @@ def inspected(result: Inspection) -> Section:
 
 def _inspected(result: Inspection, half: str = "") -> list[Block]:
     graded = f", class {result.iso_class} in all" if result.iso_class is not None else ""
-    text = f"{result.settings.edition}{graded}; U is expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
+    graded += f"; U is the expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
+    text = f"{result.settings.edition}{graded}; the tolerance is {_whose(result)}"
     notes = " ".join(map(sentence, [*(note for note in result.notes if note != FOOTNOTE), FOOTNOTE]))
     return blocks(
         Paragraph(sentence(text)),
@@ -349,6 +357,13 @@ def _inspected(result: Inspection, half: str = "") -> list[Block]:
         pictures.inspection_charts(result, half),
         Paragraph(notes),
     )
+
+
+def _whose(result: Inspection) -> str:
+    """Of which class the tolerances in the table are."""
+    if result.settings.required_class is not None:
+        return f"that of class {result.settings.required_class}, which is required"
+    return "that of the class by value, of the coarsest where there is none"
 
 
 def _rolled(result: Inspection) -> list[Block]:
@@ -443,7 +458,7 @@ def scan(results: Results, command: str = "") -> Section:
         ),
         ("other, left out", number(measured.other, 0)),
     ]
-    seen = [(effect_title(name), number(100.0 * share, 1)) for name, share in measured.coverage.items()]
+    seen = [(SURFACES.get(name, effect_title(name)), number(100.0 * share, 1)) for name, share in measured.coverage.items()]
     drawn = [
         ("teeth", number(gear.teeth, 0)),
         ("module, mm", number(spec.normal_module, 4)),

@@ -51,10 +51,10 @@ def open_words(results: Results) -> str:
     question = _question(results)
     if not question:
         return _too_faint(results)
-    told = f"it may be {_limits(results)}"
+    told = f"the loss may be {_limits(results)}"
     if results.wear.regions and _wide(results):
         told = f"{'where it was seen it' if _in_part(results) else 'the likeliest'} is {_with_own_std(results)}"
-    return f"{question} the scan does not decide: {told}"
+    return f"the scan does not decide {question}: {told}"
 
 
 def worn_so_thin(results: Results) -> str:
@@ -121,7 +121,7 @@ def _too_faint(results: Results) -> str:
         return ""
     limits = results.open_volume.of_such_teeth
     assert limits is not None
-    return f"with wear too shallow to be found it may be up to {_volume(limits[1], results)}"
+    return f"with wear too shallow to be found the loss may be up to {_volume(limits[1], results)}"
 
 
 def _limits(results: Results) -> str:

@@ -105,7 +105,10 @@ def _wear_found(results: Results) -> str:
     text = f"{lost_words(results)} is gone from {where}"
     if may_be_none(results):
         text = f"{where} {'looks' if len(wear.regions) == 1 else 'look'} worn; {lost_words(results)} is missing there, which may be none"
-    text += f", up to {depth} deep" if len(wear.regions) == 1 else f"; deepest, by {depth}, on {place}"
+    if len(wear.regions) == 1:
+        text += f", {depth} deep at its deepest" if " to " in depth.replace(SPACE, " ") else f", up to {depth} deep"
+    else:
+        text += f"; deepest, by {depth}, on {place}"
     tooth = wear.thinnest
     if tooth is not None and tooth.high < tooth.nominal:  # else it may as well be as designed
         loss = tooth.nominal - tooth.value
@@ -119,7 +122,12 @@ def _wear_found(results: Results) -> str:
 
 def _no_wear(results: Results) -> str:
     otherwise = "nothing else" if results.pieces else "nothing"
-    text = f"no wear was found: {otherwise} on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
+    left, own = results.rms_left, noise(results)
+    scatter = f"the scan's scatter of {significant(1e3 * own, 2)}{SPACE}µm"
+    if left > ABOVE_NOISE * own > 0.0:  # a flank is judged by its neighbours, and they are as far off as this
+        scatter = f"the {significant(1e3 * left, 2)}{SPACE}µm RMS by which the scan is off the design"
+        scatter += " once what was found is taken out" if results.effects else ""
+    text = f"no wear was found: {otherwise} on the flanks stands out of {scatter}"
     if is_open(results):
         return f"no wear stands out, but {open_words(results)}"
     limit = results.wear.found.would_have_shown
@@ -210,7 +218,7 @@ def doubts(results: Results) -> list[str]:
     said = [f"doubtful: {text}" for text in grave_doubts(results)]
     value, std = results.wear.volume, results.wear.volume_std
     if results.wear.regions and value > 0.0 and std > 0.3 * value:
-        said.append(f"the worn amount is known to {100 * std / value:.0f}{SPACE}% only")
+        said.append(f"what is lost is known to ±{SPACE}{significant(100.0 * std / value, 2)}{SPACE}% only")
     if results.loop is not None and results.loop.patterns:
         said.append(unexplained_words(results.loop, results.gear))
     said += weighed_words(results.weighed) if results.weighed is not None and not results.weighed.agrees else []
