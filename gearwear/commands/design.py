@@ -154,7 +154,7 @@ def _from_numbers(arguments: Namespace) -> tuple[str, str]:
         Gauge("over_pins", Measured(_number("--over-pins", m) * unit, doubt), _number("--over-pins", d) * unit)
         for d, m in arguments.over_pins
     ]
-    width, bore = (None if value is None else value * unit for value in (arguments.face_width, arguments.bore))
+    width, bore = (None if value is None else round(value * unit, 9) for value in (arguments.face_width, arguments.bore))
     remarks = {}
     if width is None:
         width = 10.0

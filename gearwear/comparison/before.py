@@ -18,7 +18,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.errors import InputError
 from gearwear.placing.cells import Cells
 from gearwear.robust import median_scale
-from gearwear.scan.reading import read_scan
+from gearwear.scan.reading import check_different, read_scan
 
 MOST_ROUNDS = 3
 """Of the loop, until the sides that changed are those it left out; numerical."""
@@ -31,7 +31,9 @@ def unworn_gear(
     artefact: of its scale is known what was stated of the scanner, not what the worn gear's artefact told."""
     numbered = stated.datum.before_tooth_1 is not None
     design = replace(after.design, datum=stated.datum.before, scanner=stated.scanner)
-    unworn = register(design, read_scan(files, units, stream), after.part, grid=after.cells.grid)
+    scans = read_scan(files, units, stream)
+    check_different(after.scans, scans, "a scan of the gear before it ran would be right")
+    unworn = register(design, scans, after.part, grid=after.cells.grid)
     if unworn.planar != after.planar:
         raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
     same = SameTeeth(0, False, 1.0, stated=True) if numbered else same_teeth(after, unworn)

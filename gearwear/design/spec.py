@@ -542,4 +542,8 @@ def check_module(section: str, module: float) -> None:
 
 def _between(section: str, label: str, value: float, low: float, high: float, unit: str) -> None:
     if not low <= value <= high:  # refuses NaN too
-        raise InputError(f"[{section}] {label} = {as_given(value)} {unit}: must lie from {low:g} to {high:g}")
+        degrees = math.degrees(value)
+        radians = (
+            f"; {as_given(value)} radians would be {degrees:.3g} degrees" if unit == "degrees" and low <= degrees <= high else ""
+        )
+        raise InputError(f"[{section}] {label} = {as_given(value)} {unit}: must lie from {low:g} to {high:g}{radians}")

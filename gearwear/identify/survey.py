@@ -10,6 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
+from gearwear.design.quantity import significant
 from gearwear.errors import InputError
 from gearwear.identify.free_involute import FreeInvolute
 from gearwear.identify.inward import Teeth, points_inward
@@ -187,7 +188,8 @@ def seems(points: Floats, planar: bool) -> str:
         seen = survey(points, planar=planar)
     except InputError:
         return ""
-    return f"; by itself the scan looks like {seen.what}"
+    wide = f", {significant(seen.face_width)} mm wide" if math.isfinite(seen.face_width) else ""
+    return f"; by itself the scan looks like {seen.what}{wide}"
 
 
 def survey(points: Floats, normals: Floats | None = None, planar: bool = False) -> Survey:

@@ -82,7 +82,34 @@ def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm", stream: b
     sections = [scan for scan in scans if scan.planar]
     if sections and len(sections) < len(scans):
         raise InputError(f"{sections[0].files[0]} is a planar section and another scan is not: views of one kind would be right")
+    check_different(scans)
     return scans
+
+
+def check_different(scans: Sequence[Scan], others: Sequence[Scan] = (), what: str = "each view once would be right") -> None:
+    """Refuse a file that was given twice: as two views of one gear its points would count double and every ± would be too small, and as the
+    scan before wear as well nothing would have changed.
+
+    Parameters
+    ----------
+    scans : sequence of Scan
+        No two of them may hold the same bytes.
+    others : sequence of Scan
+        Nor one of these and one of `scans`.
+    what : str
+        What would be right.
+
+    Raises
+    ------
+    InputError
+        If two do; it names both.
+    """
+    seen: dict[str, str] = {}
+    for digests, name in ((scan.sha256, scan.files[0]) for scan in [*scans, *others]):
+        for digest in digests:
+            if digest in seen:
+                raise InputError(f"{name}: is {'given twice' if seen[digest] == name else f'the same as {seen[digest]}'}: {what}")
+            seen[digest] = name
 
 
 def _all(paths: Sequence[str | PathLike[str]], units: str) -> list[Scan]:

@@ -37,6 +37,8 @@ COMMENT = (b"#", b"//", b";", b"!", b"%", b"*")
 NOT_A_NUMBER = {b"null", b"none", b"n/a", b"na", b"-", b"#n/a"}
 DECIMAL_COMMA = re.compile(rb"[+-]?\d*,\d+([eE][+-]?\d+)?|[+-]?\d+([eE][+-]?\d+)?")
 
+WHOLE = re.compile(rb"[+-]?\d+")
+
 
 @dataclass(frozen=True, slots=True)
 class Layout:
@@ -203,6 +205,11 @@ def _look(data: bytes) -> Layout:
             continue
         sample = (_values(text, table) for _, text in lines[number - 1 :])
         first = [row[0] for row in sample if row and len(row) == len(values)]
+        if _split_decimals([text for _, text in lines[number - 1 :]]):
+            raise InputError(
+                f"line {number}: {text[:40].decode('ascii', errors='replace')!r} has commas as decimal signs and between the columns too: blanks, tabs or semicolons between them,"
+                " or points as decimal signs, would be right"
+            )
         columns = _columns(header, len(values), first)
         return Layout(table, len(values), columns, promised, number, offset)
     raise InputError(
@@ -220,6 +227,25 @@ def _delimiters(lines: list[bytes]) -> bytes:
     if comma:
         return bytes.maketrans(b",;", b". ")
     return bytes.maketrans(b",;", b"  ")
+
+
+def _split_decimals(lines: list[bytes]) -> bool:
+    """Whether commas part numbers from their own decimals: whole numbers in pairs, of which the second has no sign and, as decimals do and whole
+    numbers do not, now and then begins with a nought."""
+    rows = [line.split(b",") for line in lines if line and not line.startswith(COMMENT)]
+    if not rows or len(rows[0]) not in (4, 6):
+        return False
+    noughts = False
+    for row in rows:
+        second = [word.strip() for word in row[1::2]]
+        if (
+            len(row) != len(rows[0])
+            or not all(WHOLE.fullmatch(word.strip()) for word in row)
+            or not all(map(bytes.isdigit, second))
+        ):
+            return False
+        noughts |= any(len(word) > 1 and word.startswith(b"0") for word in second)
+    return noughts
 
 
 def _values(text: bytes, table: bytes) -> list[float] | None:

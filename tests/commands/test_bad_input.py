@@ -156,6 +156,26 @@ def test_the_same_at_the_other_doors(place, tmp_path, command, name, words):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_scan_given_twice_is_refused(place, tmp_path):
+    """As two views its points would count double; as the scan before wear too nothing would have changed."""
+    good, again, out = place / "good.ply", tmp_path / "again.ply", tmp_path / "out"
+    shutil.copy(good, again)
+    one, rest = place / "one.toml", ("--no-loop", "--out", out)
+    refused(run("compare", one, good, good, *rest), str(good), "given twice", "each view once")
+    refused(run("compare", one, good, again, *rest), str(again), f"the same as {good}")
+    refused(run("compare", one, good, "--before", again, *rest), str(again), "before it ran")
+    assert not out.exists()
+
+
+def test_a_face_width_in_inches_shows_beside_that_of_the_scan(place, tmp_path):
+    text = (place / "one.toml").read_text()
+    narrow = tmp_path / "narrow.toml"
+    narrow.write_text("\n".join("face_width = 0.5906" if "face_width" in line else line for line in text.splitlines()))
+    refused(
+        run("compare", narrow, place / "good.ply", "--out", tmp_path / "out"), "by itself the scan looks like", "15.0 mm wide"
+    )
+
+
 def test_neither_gear_of_a_pair(place, tmp_path):
     refused(run("compare", PAIR, place / "sphere.ply", "--out", tmp_path / "out"), "nor does it fit the gear")
 

@@ -42,6 +42,7 @@ def test_dimensions_in_inches(capsys):
     text = printed(capsys, "--teeth", 12, "--tip-diameter", 3.5, "--face-width", 0.59055, "--units", "in")
     assert "diametral_pitch = 4 " in text
     assert gear_of(text).face_width == pytest.approx(15.0, abs=1e-4)
+    assert "face_width = 14.986 " in printed(capsys, "--teeth", 12, "--module", 1, "--face-width", 0.59, "--units", "in")
 
 
 def test_span_pins_and_what_is_known(capsys):

@@ -102,7 +102,9 @@ def test_a_gear_on_which_nothing_stands_out_is_not_called_worn():
     results = fake_results()
     unworn = replace(results.wear.found, regions=(), volume=0.0, volume_std=0.0)
     said = plain(verdict(taken_for_thin(changed(results, "wear.found", unworn))))
-    assert said.startswith("No wear stands out, but the scan does not decide whether the teeth were cut as thin as they were measured or are worn evenly")
+    assert said.startswith(
+        "No wear stands out, but the scan does not decide whether the teeth were cut as thin as they were measured or are worn evenly"
+    )
     assert "the loss may be 0 to " in said
 
 

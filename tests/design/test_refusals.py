@@ -29,6 +29,7 @@ def _build(teeth: int = 20, **values: float) -> Gear:
         ({"normal_module": -2.0}, "module = -2 mm"),
         ({"face_width": 0.0}, "face_width = 0 mm"),
         ({"normal_pressure_angle": math.radians(60.0)}, "pressure_angle = 60 degrees: must lie from 5 to 45"),
+        ({"normal_pressure_angle": math.radians(0.349)}, "must lie from 5 to 45; 0.349 radians would be 20 degrees"),
         ({"profile_shift": 3.5}, "profile_shift = 3.5 modules"),
         ({"addendum": math.inf}, "addendum = inf modules"),
         ({"dedendum": -0.1}, "dedendum = -0.1 modules"),

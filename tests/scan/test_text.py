@@ -161,3 +161,16 @@ def test_any_numbers_in_any_dress(
     if not any("." in line or "," in line for line in text.split(end)):
         return
     np.testing.assert_array_equal(read_text((head.replace("\n", end) + text).encode()).points, expected)
+
+
+@pytest.mark.parametrize("columns", [2, 3])
+def test_decimal_commas_with_commas_between_the_columns_are_told(columns: int) -> None:
+    """ "31,6090,-6,2250,2,8490" was read as 31, 6090, −6, a gear of ten metres."""
+    with pytest.raises(InputError, match="line 2: .* has commas as decimal signs and between the columns too"):
+        read_text(("X,Y,Z\n" + table(",", ",", columns=columns)).encode())
+
+
+def test_whole_numbers_with_colours_behind_are_whole_numbers() -> None:
+    whole = np.column_stack([np.round(POINTS * 1e3), np.arange(360).reshape(-1, 3) % 256]).astype(int)
+    for keep in (whole, np.abs(whole)):
+        np.testing.assert_array_equal(read_text("\n".join(",".join(map(str, row)) for row in keep).encode()).points, keep[:, :3])
