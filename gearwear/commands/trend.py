@@ -15,8 +15,8 @@ gearwear batch wrote.
 
 Limits are those of the designs, [limits]; whether they are kept is decided by ISO
 14253-1. Exit status: 0 all gears conform, or there are no limits; 1 one does not; 3 none
-does not, and of one neither can be said, or no scan of it gave a result; 2 an argument
-is wrong.
+does not, and one is undecided (neither can be proven), or no scan of it gave a result;
+2 an argument is wrong.
 
 Writes trend.html, trend.csv (a row for each gear and quantity), inspections.csv (each
 inspection too), teeth.csv (each tooth, under one number in every inspection), and all
@@ -29,7 +29,7 @@ def parser() -> Parser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command; 0 all conform, 1 one does not, 3 neither can be said, 2 an argument is wrong."""
+    """Run the command; 0 all conform, 1 one does not, 3 one is undecided, 2 an argument is wrong."""
     return answer(parser(), _run, argv)
 
 

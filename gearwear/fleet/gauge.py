@@ -50,6 +50,8 @@ class Accord(StrEnum):
     OPERATORS = "operators contradict the stated ±"
     """Repeats by the same operator do not, but those by different ones do."""
     ALIKE = "repeats agree with the stated ±"
+    RANGES = "repeats agree with the stated ranges, not with the ± alone"
+    """They scatter more than the ±, and what the reports leave open beside it explains that."""
     LESS = "repeats scatter less than the stated ±"
     UNKNOWN = "no ± is stated"
 
@@ -165,6 +167,8 @@ def _accord(repeats: Scatter | None, more: bool, operators: bool) -> Accord:
         return Accord.UNKNOWN
     if more or operators:
         return Accord.MORE if more else Accord.OPERATORS
+    if repeats.low > 1.0 and repeats.p_value > 0.5 * (1.0 - SHARE):  # by the ± alone the chance is below this
+        return Accord.RANGES
     return Accord.LESS if repeats.high < 1.0 else Accord.ALIKE
 
 

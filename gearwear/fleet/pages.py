@@ -36,6 +36,7 @@ ACCORDS = {
     Accord.MORE: ("contradict", "not-conforming"),
     Accord.OPERATORS: ("operators contradict", "not-conforming"),
     Accord.ALIKE: ("agree", "conforming"),
+    Accord.RANGES: ("agree with the ranges", "conforming"),
     Accord.LESS: ("scatter less", "conforming"),
     Accord.UNKNOWN: ("", "none"),
 }
@@ -143,6 +144,7 @@ def gauge_page(studies: Sequence[GaugeStudy], scans: Mapping[tuple[str, str], Se
     return environment(HERE).get_template("gauge.html.j2").render(
         subject=words.study_words(studies) if studies else "", verdict=words.accord_words(studies) if studies else words.NOTHING_REPEATED,
         rows=[_gauge_row(study) for study in studies], cards=cards, heights=heights, cannot=words.REPEATS_CANNOT,
+        why_empty="" if any(study.variance for study in studies) else words.ONE_GEAR,
         operators="; ".join(max(studies, key=lambda study: len(study.operators)).operators) if studies else "", footer=_footer(),
     )  # fmt: skip
 

@@ -37,7 +37,7 @@ OTHER_GEAR = (
     "its wear fell from one inspection to the next, so no rate is given: is it the same gear? One that was put in its place needs a gear_id of"
     " its own"
 )
-NO_RESULT = "no result of the last inspection: of the limits neither can be said"
+NO_RESULT = "the last inspection gave no result: whether the limits are kept is undecided"
 """What is said where older inspections conform."""
 SECONDS = 86400.0
 

@@ -28,6 +28,10 @@ SAME_TEETH = (
     "Numbers are those of the whole gear, its worst as a rule. Numbers of single teeth stand in teeth.csv, under the tooth numbers of the gear's"
     " first scan: which tooth is which, and which end is up, is told by pitch, form, marks and damage of the gear, with the probability beside it."
 )
+UNDECIDED = "undecided"
+"""Said of a gear of which it is not proven that it conforms, nor that it does not (`Conformity.NEITHER`)."""
+ONE_GEAR = "Repeatability, operators, GRR and ndc take at least two gears, each scanned equally often by the same operators."
+"""Why columns of the gauge study are empty."""
 NOTHING_REPEATED = (
     "No gear was scanned twice at the same inspection by the same operator: there is nothing to study. Scans of one inspection have the same"
     " cycles_run, or where that is not known the same inspected, to the minute if it has a time."
@@ -69,7 +73,7 @@ def verdict_words(gears: Sequence[GearTrend]) -> str:
         return sentence("; ".join(statements))
     words = [
         (count[Conformity.NOT_CONFORMING], "{} beyond a limit"),
-        (count[Conformity.NEITHER], "{} of which neither can be said"),
+        (count[Conformity.NEITHER], "{} undecided"),
         (count[Conformity.CONFORMING], "{} within all limits"),
         (count[None], "{} without limits"),
     ]
@@ -104,6 +108,8 @@ def state_words(gear: GearTrend) -> str:
     """Whether a gear keeps its limits."""
     if not gear.trends:
         return "no result"
+    if gear.conformity is Conformity.NEITHER:
+        return UNDECIDED
     return "no limits" if gear.conformity is None else str(gear.conformity)
 
 
@@ -140,6 +146,8 @@ def gauge_lines(studies: Sequence[GaugeStudy]) -> list[tuple[str, str]]:
     lines.append((f"  {'':<{NAME}}{'repeating':>12}{'operators':>10}{'GRR':>6}{'ndc':>5}  repeats / stated", "dim"))
     for study in studies:
         lines.append((f"  {gauge_line(study)}", "yellow" if study.accord in (Accord.MORE, Accord.OPERATORS) else ""))
+    if not any(study.variance for study in studies):
+        lines += [("", ""), *wrapped(f"! {ONE_GEAR}", "yellow")]
     return [*lines, ("", "")]
 
 
@@ -165,6 +173,11 @@ def accord_words(studies: Sequence[GaugeStudy]) -> str:
         said.append(
             f"Scans by different operators contradict it, beyond their repeats, of {_named(operators)}{_which(operators)}."
         )
+    ranges = [title_of(study.quantity, study.flank) for study in judged if study.accord is Accord.RANGES]
+    if ranges:
+        said.append(
+            f"Of {len(ranges)} more they scatter more than the ±, within the ranges that the reports state{_which(ranges)}."
+        )
     return " ".join(said)
 
 
@@ -174,7 +187,7 @@ def _named(names: Sequence[str]) -> str:
 
 def _which(names: Sequence[str]) -> str:
     more = f" and {len(names) - 3} more" if len(names) > 3 else ""
-    return f": {', '.join(names[:3])}{more}" if names else ""
+    return f": {'; '.join(names[:3])}{more}" if names else ""
 
 
 def gauge_line(study: GaugeStudy) -> str:

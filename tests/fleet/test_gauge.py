@@ -15,7 +15,7 @@ from gearwear.fleet.gauge import Accord, Repeat, gauge_study, in_accord, scatter
 from gearwear.fleet.labels import shown
 from gearwear.fleet.pages import gauge_page
 from gearwear.fleet.reading import gauge_studies, read_fleet
-from gearwear.fleet.words import accord_words
+from gearwear.fleet.words import accord_words, gauge_lines
 from tests.fleet.fleets import report, row, store_of
 
 
@@ -113,7 +113,7 @@ def test_two_answers_to_one_question_contradict_nothing():
     ]
     (study,) = in_accord([gauge_study("wear_volume_mm3", "", given)])
     (plain,) = in_accord([gauge_study("wear_volume_mm3", "", [replace(one, down=0.0, up=0.0) for one in given])])
-    assert (study.accord, plain.accord) == (Accord.ALIKE, Accord.MORE)
+    assert (study.accord, plain.accord) == (Accord.RANGES, Accord.MORE)  # "agree" stood beside a ratio of a hundred
     assert study.repeatability.ratio == plain.repeatability.ratio > 100.0
 
 
@@ -237,3 +237,15 @@ def test_without_date_and_cycles_repeats_are_told_apart_or_none(tmp_path):
     assert (study.parts, study.repeats) == (("G",), 2)
     none, parts = _studied(tmp_path / "not", [(None, None, "", "", 1.0), (None, None, "", "", 5.0)])
     assert none is None and parts == ["G", "G inspection 2"]
+
+
+def test_a_study_of_one_gear_says_why_its_columns_are_empty():
+    """Of one gear there is no scatter of gears to hold the gauge against."""
+    for parts, said in ((1, True), (3, False)):
+        lines = [
+            line
+            for line, _ in gauge_lines(
+                in_accord([gauge_study("wear_depth_mm", "", scans(np.random.default_rng(4), parts=parts))])
+            )
+        ]
+        assert any("at least two gears" in line for line in lines) == said

@@ -118,7 +118,7 @@ def test_a_last_inspection_without_result_cannot_be_said(later):
     assert gear_trend("G1", readings([0.01]), limits, inspections=[later]).conformity is Conformity.NEITHER
     assert gear_trend("G1", readings([0.3]), limits, inspections=[later]).conformity is Conformity.NOT_CONFORMING
     assert gear_trend("G1", readings([0.01]), {}, inspections=[later]).conformity is None
-    assert any(note.startswith("no result of") for note in gear_trend("G1", readings([0.01]), limits, inspections=[later]).notes)
+    assert any(note.startswith("the last inspection gave no result") for note in gear_trend("G1", readings([0.01]), limits, inspections=[later]).notes)
     before = Occasion(DAY - timedelta(60), 0.0)
     assert gear_trend("G1", readings([0.01]), limits, inspections=[before]).conformity is Conformity.CONFORMING
 
@@ -225,7 +225,7 @@ def test_gears_without_a_result_are_said_by_name_and_not_judged():
     assert [state_words(gear) for gear in (worn, refused, limited, free)] == ["conforming", "no result", "no result", "no limits"]
 
 
-def test_a_gear_of_which_neither_can_be_said_is_counted_in_plain_words():
+def test_a_gear_that_is_undecided_is_counted_in_plain_words():
     near = gear_trend("near", readings([0.1]), {"wear_depth_mm": 0.1})
     assert near.conformity is Conformity.NEITHER
-    assert verdict_words([near]) == "1 gear: 1 of which neither can be said."
+    assert verdict_words([near]) == "1 gear: 1 undecided." and state_words(near) == "undecided"

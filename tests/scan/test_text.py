@@ -165,8 +165,8 @@ def test_any_numbers_in_any_dress(
 
 @pytest.mark.parametrize("columns", [2, 3])
 def test_decimal_commas_with_commas_between_the_columns_are_told(columns: int) -> None:
-    """ "31,6090,-6,2250,2,8490" was read as 31, 6090, −6, a gear of ten metres."""
-    with pytest.raises(InputError, match="line 2: .* has commas as decimal signs and between the columns too"):
+    """A line "31,6090,-6,2250,2,8490" was read as 31, 6090, −6, a gear of ten metres."""
+    with pytest.raises(InputError, match=r"line 2: .* has commas as decimal signs and between the columns too"):
         read_text(("X,Y,Z\n" + table(",", ",", columns=columns)).encode())
 
 
