@@ -118,7 +118,7 @@ def test_a_last_inspection_without_result_cannot_be_said(later):
     assert gear_trend("G1", readings([0.01]), limits, inspections=[later]).conformity is Conformity.NEITHER
     assert gear_trend("G1", readings([0.3]), limits, inspections=[later]).conformity is Conformity.NOT_CONFORMING
     assert gear_trend("G1", readings([0.01]), {}, inspections=[later]).conformity is None
-    assert any(note.startswith("the last inspection gave no result") for note in gear_trend("G1", readings([0.01]), limits, inspections=[later]).notes)
+    assert any("no result" in note for note in gear_trend("G1", readings([0.01]), limits, inspections=[later]).notes)
     before = Occasion(DAY - timedelta(60), 0.0)
     assert gear_trend("G1", readings([0.01]), limits, inspections=[before]).conformity is Conformity.CONFORMING
 
