@@ -21,6 +21,7 @@ from hypothesis import HealthCheck, settings
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 
+gc.disable()  # until all tests are known: what is imported stays
 sys.dont_write_bytecode = False  # the same for this process, and the assertions of the tests
 
 # The same examples in every run: what passes here passes there, and a busy machine is no failure.
@@ -120,6 +121,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def pytest_collection_finish() -> None:
     """What is there by now stays: the collector of cycles, which took a tenth of the time, looks at what tests make alone, and seldom."""
     gc.freeze()
+    gc.enable()
     gc.set_threshold(50_000, 20, 20)
 
 
