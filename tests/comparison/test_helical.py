@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,6 +16,7 @@ from gearwear.design.pair import Design
 from gearwear.inspection.inspection import inspect
 from gearwear.report.records.comparison import document
 from gearwear.wear.solid import gear_triangles, nominal_like
+from tests.diagnose.plain import plain_effects
 from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_helical import designed
 from tests.synthetic.tooth import Patch
@@ -26,17 +28,18 @@ SLOPE = 0.016
 
 
 @cache
-def compared():
+def compared(plain: bool = True):
     added = lambda side, roll, z: side * SLOPE * (z / GEAR.width - 0.5)  # noqa: E731
     cloud = scan(GEAR, 60_000, noise=0.006, seed=5, wear=(PATCH,), added=added, coat=0.014)
     design = Design({"gear": designed(GEAR)})
-    measured = gw.find_effects(gw.register(design, gw.as_scan(cloud.points)))
+    with plain_effects() if plain else nullcontext():
+        measured = gw.find_effects(gw.register(design, gw.as_scan(cloud.points)))
     return measured, gw.find_wear(measured)
 
 
 @pytest.mark.long
 def test_what_was_put_in_is_named_alone_within_two_standard_deviations():
-    measured, _ = compared()
+    measured, _ = compared(plain=False)
     found = {effect.name: effect for effect in measured.loop.effects}
     assert set(found) == {"coating", "helix_slope"}
     for name, parameter, truth in (("coating", "thickness_um", 14.0), ("helix_slope", "slope_um", 1e3 * SLOPE)):

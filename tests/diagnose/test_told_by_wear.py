@@ -1,5 +1,7 @@
 """Taper or helix slope, where fillets do not turn with the flanks and one side is worn: the worn side tells, by how it would have to be worn."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
@@ -11,18 +13,21 @@ from gearwear.comparison.measured_gear import register
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from gearwear.diagnose.told_by_wear import _likelier, told_by_wear
+from tests.diagnose.plain import PLAIN_AND_ALL, plain_effects
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Recipe, make_scan
 from tests.synthetic.removal import SlidingWear
 
 
-def one(effect):
+def one(effect, searched):
     recipe = Recipe(
         noise_um=8.0, jitter=1.0, pose="any", fillets_follow=False, effects=(effect,), wear=(SlidingWear(50.0, side=-1),)
     )
-    return study(Scenario("test", recipe.of_size(20_000), 5, mate=False))[0]
+    with plain_effects() if searched else nullcontext():
+        return study(Scenario("test", recipe.of_size(20_000), 5, mate=False))[0]
 
 
+@PLAIN_AND_ALL
 @pytest.mark.parametrize(
     "effect",
     [
@@ -33,8 +38,8 @@ def one(effect):
     ],
     ids=lambda effect: f"{effect.name} {next(iter(effect.parameters.values())):g}",
 )
-def test_the_worn_side_tells_what_the_sound_one_cannot(effect):
-    told = one(effect)
+def test_the_worn_side_tells_what_the_sound_one_cannot(effect, effects):
+    told = one(effect, effects)
 
     assert [found["name"] for found in told["found"]] == [effect.name]
     (found,) = told["found"]

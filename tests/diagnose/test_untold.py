@@ -14,6 +14,7 @@ from gearwear.diagnose.effects.pitch import EFFECT as PITCH
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.wear.regions import find_wear
+from tests.diagnose.plain import PLAIN
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Patch, Recipe, SlidingWear, make_scan
 
@@ -32,7 +33,7 @@ def closed(seed: int, *wear, spread_um: float = 10.0):
     scan = make_scan(recipe.of_size(20_000), seed)
     located = locate(scan.points, GEAR)
     cells = bin_points(located, CellGrid.for_scan(GEAR, len(located)), clip=0.4)
-    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), worn=frozenset())
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), PLAIN, worn=frozenset())
     return cells, loop, own, scan.truth.volume_mm3
 
 
@@ -171,7 +172,7 @@ def test_a_flank_at_the_edge_of_what_was_seen_is_made_as_others_are():
     located = locate(points, GEAR)
     cells = bin_points(located, CellGrid.for_scan(GEAR, len(located)), clip=0.4)
     worn = frozenset({Side.LEFT})
-    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), worn=worn)
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), PLAIN, worn=worn)
     for (known,), true in zip(each_tooth(loop), (index, thickness), strict=True):
         off = np.array(known.value) - true
         assert abs(off[last] - np.delete(off, last).mean()) < 2.0 * known.std[last] < 4.0 * true.std()

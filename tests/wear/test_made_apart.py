@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from gearwear.design.surface import locate
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.wear.regions import find_wear
+from tests.diagnose.plain import PLAIN
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Recipe, SlidingWear, make_scan
 
@@ -17,6 +20,7 @@ GEAR = designed()
 BOTH = frozenset(Side)
 
 
+@cache
 def worn(seed: int, spread_um: float, depths: tuple[float, float] = (70.0, 45.0)):
     """A gear slid on both sides, each flank by a share of its own, of which teeth stand off by pitch and thickness (µm); its wear, how high each flank
     was made about its side's mean (teeth, 2) mm, and the worn volumes put in."""
@@ -31,7 +35,7 @@ def worn(seed: int, spread_um: float, depths: tuple[float, float] = (70.0, 45.0)
     scan = make_scan(recipe.of_size(30_000), seed)
     located = locate(scan.points, GEAR)
     cells = bin_points(located, CellGrid.for_scan(GEAR, len(located)), clip=0.4)
-    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), worn=BOTH)
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), PLAIN, worn=BOTH)
     found = find_wear(cells.with_deviation(loop.left), loop.noise, BOTH, loop, limits=False)
     made = 1e-3 * np.cos(GEAR.transverse_pressure_angle) * np.column_stack([index + 0.5 * thickness, 0.5 * thickness - index])
     return found, made - made.mean(axis=0), {(flank.tooth, int(flank.side)): flank.volume_mm3 for flank in scan.truth.flanks}

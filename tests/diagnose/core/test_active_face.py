@@ -11,6 +11,7 @@ from gearwear.diagnose.active_face import active_faces
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.wear.regions import find_wear
+from tests.diagnose.plain import PLAIN, PLAIN_AND_ALL
 from tests.placing.placing import designed
 from tests.synthetic import Recipe, make_scan
 
@@ -150,7 +151,8 @@ def test_beyond_one_end_it_is_known_as_well_as_flanks_are_cut(form):
     assert (wear.volume_std > 0.04 * true) == (form > 0.0)
 
 
-def test_the_other_side_may_be_worn_without_a_ledge():
+@PLAIN_AND_ALL
+def test_the_other_side_may_be_worn_without_a_ledge(effects):
     """A mate as wide as the face on one side of an idler, a narrower one on the other."""
     narrow, wide = low_between(2.6, 12.1, 0.030, side=1), low_between(-1.0, WIDTH + 1.0, 0.060, side=-1)
     sliding = np.abs(SOUND.roll / GEAR.reference_roll - 1.0)
@@ -159,7 +161,7 @@ def test_the_other_side_may_be_worn_without_a_ledge():
         return narrow(tooth, own, zeta) + wide(tooth, own, zeta) * np.nan_to_num(sliding)
 
     cells = cells_with(heights)
-    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False))
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), effects)
     assert [face.side for face in loop.context.faces] == [Side.LEFT]
     assert loop.worn_sides == frozenset(Side)
 
@@ -168,5 +170,5 @@ def test_a_side_that_is_known_to_be_unworn_has_none():
     cells = cells_with(low_between(2.6, 12.1, 0.015, side=1))
     context = make_context(cells, np.eye(3), False)
     assert [face.side for face in context.faces] == [Side.LEFT]
-    loop = close_loop(cells, noise(cells), context, worn=frozenset())
+    loop = close_loop(cells, noise(cells), context, PLAIN, worn=frozenset())
     assert not loop.worn_sides and not loop.context.faces

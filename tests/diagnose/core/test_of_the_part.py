@@ -17,6 +17,7 @@ from gearwear.diagnose.of_the_part import left_in_the_part
 from gearwear.placing.cells import noise
 from tests.diagnose.core.test_worn_sides import FROM_TOOTH_TO_TOOTH, LEFT, NO_SIDE, PINION, binned, explained
 from tests.diagnose.core.toy import Toy, problem
+from tests.diagnose.plain import PLAIN_AND_ALL
 from tests.synthetic import Effect, SlidingWear
 
 
@@ -87,12 +88,15 @@ def test_a_coat_on_roots_and_tips_is_told_whatever_the_flanks_are_like():
     assert [effect.name for effect in loop.effects if effect.kind is Kind.MEASUREMENT] == ["coating"]
 
 
+@PLAIN_AND_ALL
 @pytest.mark.parametrize(
     ("flank_class", "varies", "sides"),
     [(8, 0.0, NO_SIDE), pytest.param(3, 0.0, LEFT, marks=pytest.mark.long), (8, 0.4, LEFT)],
     ids=["cut", "rougher than its class", "worn"],
 )
-def test_a_hollow_form_of_one_side_within_the_class_that_teeth_have_alike_is_as_likely_cut(unworn, flank_class, varies, sides):
+def test_a_hollow_form_of_one_side_within_the_class_that_teeth_have_alike_is_as_likely_cut(
+    unworn, flank_class, varies, sides, effects
+):
     """Nothing at the pitch point, 20 µm beside it, and not the shape of sliding: f_fαT is 24 µm in class 8 and 4.2 in class 3."""
     first, last = unworn.grid.roll_edges[[0, -1]]
     pitch_point = make_context(unworn, np.eye(3), False).pitch_roll
@@ -101,7 +105,7 @@ def test_a_hollow_form_of_one_side_within_the_class_that_teeth_have_alike_is_as_
     share = 1.0 + varies * np.sin(unworn.points.tooth.astype(float) ** 2)
     cells = with_form(replace(unworn, grid=replace(unworn.grid, gear=gear)), share * hollow, LEFT)
     assert (np.ptp(hollow) < profile_form_tolerance(gear.normal_module, flank_class)) == (flank_class == 8)
-    loop = explained(cells)
+    loop = explained(cells, effects)
     assert {loop.worn_sides, *loop.undecided} >= {LEFT} and loop.worn_sides == sides
 
 
@@ -117,6 +121,7 @@ def test_flanks_that_differ_on_both_sides_were_cut_so(unworn):
     assert loop.worn_sides == NO_SIDE
 
 
+@PLAIN_AND_ALL
 @pytest.mark.parametrize(
     "form",
     [
@@ -126,21 +131,23 @@ def test_flanks_that_differ_on_both_sides_were_cut_so(unworn):
     ],
     ids=["crowned", "relieved at the root", "relieved at both ends"],
 )
-def test_a_side_is_worn_whatever_the_other_was_cut_to(form):
+def test_a_side_is_worn_whatever_the_other_was_cut_to(form, effects):
     """Left flanks slid by 60 µm, each tooth by its own share, right ones cut otherwise by 25 µm: neither made so, nor worn on both sides."""
     worn = binned((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),), points=14_000)
-    loop = explained(with_form(worn, -0.025 * form(along(worn)), frozenset({Side.RIGHT})))
+    loop = explained(with_form(worn, -0.025 * form(along(worn)), frozenset({Side.RIGHT})), effects)
     assert (loop.worn_sides, loop.others) == (LEFT, ())
 
 
-def test_a_laser_beside_the_axis_may_be_a_slope_of_the_sound_side_where_the_other_is_worn():
+@pytest.mark.parametrize(
+    ("wear", "sides"),
+    [
+        pytest.param((), NO_SIDE, marks=pytest.mark.long, id="both sound"),
+        pytest.param((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),), LEFT, id="left worn"),
+    ],
+)
+def test_a_laser_beside_the_axis_may_be_a_slope_of_the_sound_side_where_the_other_is_worn(wear, sides):
     """It turns flanks of both sides against each other, which no slope does; those of one side alone it turns as a slope and another level of theirs."""
-    beside = (Effect("axis_offset_lateral", {"offset_um": 60.0}),)
-    both, right = (
-        explained(binned((), beside)),
-        explained(binned((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),), beside)),
-    )
-    assert (both.worn_sides, right.worn_sides) == (NO_SIDE, LEFT)
-    (of_both,), (of_one,) = both.effects, right.effects
-    assert of_both.name == of_one.name == "axis_offset_lateral"
-    assert "profile_slope" in of_one.alternatives and "profile_slope" not in of_both.alternatives
+    loop = explained(binned(wear, (Effect("axis_offset_lateral", {"offset_um": 60.0}),)))
+    (effect,) = loop.effects
+    assert (loop.worn_sides, effect.name) == (sides, "axis_offset_lateral")
+    assert ("profile_slope" in effect.alternatives) == bool(sides)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from gearwear.diagnose.pitch_point import STEP, likeliest, pitch_points, price_o
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import noise
 from tests.diagnose.core.test_worn_sides import LEFT, PINION, binned
+from tests.diagnose.plain import PLAIN, PLAIN_AND_ALL
 from tests.synthetic import SlidingWear
 
 
@@ -24,11 +26,10 @@ def involute(angle):
     return math.tan(angle) - angle
 
 
-def test_the_price_is_that_of_shifts_that_sum_to_half_a_module_on_gears_alike():
+def test_the_price_is_that_of_shifts_that_sum_to_half_a_module_on_gears_alike(context):
     """Their pitch point by inv α_w = inv α + 2 Σx tan α / (z1 + z2) is one standard deviation off, to the second order of the shift."""
     gear = Gear.from_spec(GearSpec("gear", 40, 2.0, 10.0))
-    context = make_context(binned(()), np.eye(3), False)
-    object.__setattr__(context, "gear", gear)
+    context = replace(context, gear=gear)
     alpha = math.radians(20.0)
     wanted = involute(alpha) + 2.0 * 0.5 * math.tan(alpha) / 80
     working = brentq(lambda angle: involute(angle) - wanted, alpha, 1.0)
@@ -76,11 +77,12 @@ def test_without_a_loss_or_with_one_about_the_reference_circle_it_stays_there(co
 @pytest.fixture(scope="module")
 def slid():
     """Flanks slid about a pitch point 4 mm of roll above the reference circle, 0.63 modules."""
-    return binned((SlidingWear(50.0, 1, law="archard", off=4.0),))
+    return binned((SlidingWear(50.0, 1, law="archard", off=4.0),), points=10_000)
 
 
-def test_a_side_slid_about_another_pitch_point_is_found_worn(slid):
-    loop = close_loop(slid, noise(slid), make_context(slid, np.eye(3), False))
+@PLAIN_AND_ALL
+def test_a_side_slid_about_another_pitch_point_is_found_worn(slid, effects):
+    loop = close_loop(slid, noise(slid), make_context(slid, np.eye(3), False), effects)
     assert loop.worn_sides == LEFT
     column = float(np.diff(slid.grid.roll_edges).mean())
     assert loop.context.pitch == pytest.approx(PINION.reference_roll + 4.0, abs=0.5 * column)
@@ -93,6 +95,6 @@ def test_a_mate_says_where_it_is_and_nothing_is_looked_for(slid, monkeypatch):
 
     monkeypatch.setattr(worn_sides, "likeliest", asked)
     pitch, ratio = PINION.reference_roll + 4.0, 2.0
-    loop = close_loop(slid, noise(slid), make_context(slid, np.eye(3), False, mate=(ratio, (1.0 + ratio) * pitch)))
+    loop = close_loop(slid, noise(slid), make_context(slid, np.eye(3), False, mate=(ratio, (1.0 + ratio) * pitch)), PLAIN)
     assert Side.LEFT in loop.worn_sides
     assert loop.context.pitch is None and loop.context.pitch_roll == pytest.approx(pitch)

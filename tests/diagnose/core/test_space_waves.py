@@ -1,6 +1,8 @@
 """Waves that points were carried by in space, asked back; and what is the gear's own, or chance, where there is none."""
 
+from contextlib import nullcontext
 from dataclasses import replace
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,6 +18,7 @@ from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.space_waves import SpaceWave, _transformed, find_space_waves
 from gearwear.placing.cells import CellGrid, bin_points
+from tests.diagnose.plain import PLAIN_AND_ALL, plain_effects
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Recipe, make_scan
 from tests.synthetic.removal import SlidingWear
@@ -32,15 +35,23 @@ def cells_of(points):
     return bin_points(locate(points, gear), CellGrid.for_scan(gear, len(points)))
 
 
+@cache
+def quiet():
+    """A gear as drawn."""
+    return make_scan(QUIET, 3).points
+
+
 def carried(points, wavelength, height, way, along=ALONG):
     """Points carried along `way` by a wave that goes along another: of the instrument, it knows of no gear."""
     return points + height * np.cos(2.0 * np.pi * points @ along / wavelength + 0.7)[:, None] * np.asarray(way)
 
 
-@pytest.mark.parametrize(("wavelength", "height"), [(14.0, 0.006), (8.0, 0.004), (5.0, 0.004)])
+@pytest.mark.parametrize(
+    ("wavelength", "height"), [(14.0, 0.006), pytest.param(8.0, 0.004, marks=pytest.mark.long), (5.0, 0.004)]
+)
 def test_a_wave_comes_back(wavelength, height):
     way = np.array([0.8, 0.6, 0.0])
-    (found,) = find_space_waves(cells_of(carried(make_scan(QUIET, 3).points, wavelength, height, way)), NOISE)
+    (found,) = find_space_waves(cells_of(carried(quiet(), wavelength, height, way)), NOISE)
     sign = np.sign(found.vector @ ALONG)
     assert found.vector * sign == pytest.approx(ALONG / wavelength, abs=0.001)
     assert found.wavelength == pytest.approx(wavelength, rel=0.02)
@@ -51,7 +62,7 @@ def test_a_wave_comes_back(wavelength, height):
 
 
 def test_what_it_does_to_a_point_is_its_displacement_along_the_normal():
-    cells = cells_of(make_scan(QUIET, 3).points)
+    cells = cells_of(quiet())
     points = cells.points.take(cells.seen)
     wave = SpaceWave(ALONG / 7.0, np.array([0.003, 0.0, 0.001]), np.array([0.0, -0.002, 0.0]), 0.0)
     phase = 2.0 * np.pi * points.position @ ALONG / 7.0
@@ -86,12 +97,12 @@ def test_what_is_the_gears_own_is_no_wave():
 @pytest.mark.parametrize("reach", [14.0, 40.0, 75.0, 110.0])
 def test_few_teeth_tell_of_no_wave_that_is_not_there(reach):
     """One tooth to eight of twelve: too few to tell one another, and none where they are enough. A warning would be an error here."""
-    points = make_scan(QUIET, 3).points
+    points = quiet()
     assert find_space_waves(cells_of(points[np.abs(np.degrees(np.arctan2(points[:, 1], points[:, 0]))) < reach]), NOISE) == ()
 
 
 def test_a_wave_on_two_thirds_of_the_teeth_comes_back():
-    points = make_scan(QUIET, 3).points
+    points = quiet()
     seen = points[np.abs(np.degrees(np.arctan2(points[:, 1], points[:, 0]))) < 120.0]
     (found,) = find_space_waves(cells_of(carried(seen, 9.0, 0.006, [0.8, 0.6, 0.0])), NOISE)
     assert found.wavelength == pytest.approx(9.0, rel=0.02) and found.amplitude == pytest.approx(0.006, rel=0.1)
@@ -105,6 +116,7 @@ def test_a_wear_of_one_tooth_is_no_wave():
     assert find_space_waves(cells.with_deviation(points.deviation + worn), NOISE) == ()
 
 
+@pytest.mark.long
 def test_a_bowed_axis_does_not_hide_the_rest():
     """It goes round the gear once, and has no name: pitch errors and the worn side show beside it."""
     index = np.cumsum(np.random.default_rng(6).normal(0.0, 3.0, 12))
@@ -118,11 +130,13 @@ def test_a_bowed_axis_does_not_hide_the_rest():
     assert [pattern.order for pattern in loop.patterns] == [1]
 
 
-def test_wear_is_measured_beside_fringes_that_have_no_name():
+@PLAIN_AND_ALL
+def test_wear_is_measured_beside_fringes_that_have_no_name(effects):
     """Fringes as high as the noise are told, as unexplained; no effect is made of them, and which side is worn is not lost."""
     recipe = Recipe(noise_um=8.0, jitter=1.0, pose="none", wear=(SlidingWear(50.0, side=-1),)).of_size(25_000)
     fringed = carried(make_scan(recipe, 8).points, 9.0, 0.008, [0.8, 0.6, 0.0])
-    loop = find_effects(register(Design({"gear": designed()}), as_scan(fringed))).loop
+    with plain_effects() if effects else nullcontext():
+        loop = find_effects(register(Design({"gear": designed()}), as_scan(fringed))).loop
     (wave,) = loop.in_space
     assert wave.wavelength == pytest.approx(9.0, rel=0.02) and wave.amplitude == pytest.approx(0.008, rel=0.1)
     assert loop.worn_sides == frozenset({Side.RIGHT}) and loop.effects == ()

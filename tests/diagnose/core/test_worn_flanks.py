@@ -10,6 +10,7 @@ from gearwear.diagnose import worn_flanks
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.worn_flanks import Levels, low_flanks, waves
 from gearwear.placing.cells import CellGrid, bin_points, noise
+from tests.diagnose.plain import PLAIN_AND_ALL
 from tests.placing.placing import designed
 from tests.synthetic import AbrasiveWear, Recipe, make_scan
 
@@ -135,14 +136,15 @@ def test_metal_does_not_come_back():
     assert low_flanks(levels(left, right)) == ()
 
 
+@PLAIN_AND_ALL
 @pytest.mark.parametrize("step", [3, pytest.param(2, marks=pytest.mark.long)])
-def test_worn_flanks_at_even_steps_are_neither_waves_nor_effects(step):
+def test_worn_flanks_at_even_steps_are_neither_waves_nor_effects(step, effects):
     """In a scan whose wear is put in by code that shares nothing with the fit; without them the others tell of nothing else."""
     worn = tuple(range(1, 12, step))
     scan = make_scan(Recipe(jitter=1.0, noise_um=6.0, pose="none", wear=(AbrasiveWear(12.0, 1, worn),)).of_size(20_000), 5)
     located = locate(scan.points, PINION)
     cells = bin_points(located, CellGrid.for_scan(PINION, len(located)), clip=0.3)
-    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False))
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), effects)
     assert ([effect.name for effect in loop.effects], loop.patterns, loop.worn_sides, loop.others) == ([], (), frozenset(), ())
     assert [tuple(place) for place in np.argwhere(loop.worn_flanks)] == [(tooth, 0) for tooth in worn]
 

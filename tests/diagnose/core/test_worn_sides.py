@@ -27,6 +27,7 @@ from gearwear.diagnose.pitch_point import as_slid
 from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
 from gearwear.diagnose.worn_sides import _Loss, _Scan
 from gearwear.placing.cells import CellGrid, bin_points, noise
+from tests.diagnose.plain import PLAIN, PLAIN_AND_ALL
 from tests.placing.placing import designed
 from tests.synthetic import AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SlidingWear, make_scan
 
@@ -42,18 +43,15 @@ def binned(wear, effects=(), seed=3, points=20_000):
     return bin_points(located, CellGrid.for_scan(PINION, len(located)), clip=0.3)
 
 
-def explained(cells):
-    return close_loop(cells, noise(cells), make_context(cells, np.eye(3), False))
+def explained(cells, searched=None):
+    return close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), searched)
 
 
 def closed(wear, effects=(), seed=3):
     return explained(binned(wear, effects, seed))
 
 
-def worn_sides(wear, effects=(), seed=3):
-    return closed(wear, effects, seed).worn_sides
-
-
+@PLAIN_AND_ALL
 @pytest.mark.parametrize(
     ("wear", "sides"),
     [
@@ -63,8 +61,8 @@ def worn_sides(wear, effects=(), seed=3):
     ],
     ids=["left", "both", "patches"],
 )
-def test_the_sides_that_were_worn_are_the_sides_called_worn(wear, sides):
-    assert worn_sides(wear) == sides
+def test_the_sides_that_were_worn_are_the_sides_called_worn(wear, sides, effects):
+    assert explained(binned(wear), effects).worn_sides == sides
 
 
 @pytest.mark.long
@@ -139,7 +137,7 @@ def test_one_flank_that_has_gained_does_not_clear_the_others_of_wear():
 def test_thin_teeth_may_be_evenly_worn_and_thick_ones_not(thickness_um):
     """Half of the arc turned to either side: δ = ½ s cos α on every flank."""
     cells = binned((), (Effect("tooth_thickness", {"thickness_um": thickness_um}),))
-    loop = explained(cells)
+    loop = explained(cells, PLAIN)
     (thin,) = [effect for effect in loop.effects if effect.name == "tooth_thickness"]
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
     depth = max(-0.5e-3 * thickness_um * np.cos(PINION.transverse_pressure_angle), 0.0)
@@ -180,7 +178,7 @@ def test_a_form_of_the_coast_side_that_nothing_explains_may_be_on_the_worn_side_
     ids=lambda effect: effect.name,
 )
 def test_what_was_made_alike_on_all_teeth_is_not_called_wear(effect):
-    assert worn_sides(PATCHES, (effect,)) == NO_SIDE
+    assert closed(PATCHES, (effect,)).worn_sides == NO_SIDE
 
 
 def test_the_cheapest_is_taken_and_what_costs_no_more_than_chance_beyond_it_is_not_excluded():
