@@ -132,7 +132,7 @@ SHIFTED = (
 def test_a_shift_that_is_not_round_is_offered(numbers, bore, tmp_path, monkeypatch):
     """Tip and root tell it; a round shift, or a scale that width and bore gainsay, does not hide it. Of what was found the command tells."""
     recipe = Recipe(gear=replace(numbers, bore_diameter=bore), pose="any", noise_um=NOISE, jitter=1.0)
-    made = make_scan(recipe.of_size(25_000), 3)
+    made = make_scan(recipe.of_size(12_000), 3)
     found = find_candidates(made.points)
     ranked = found.ranked
     same = [one.proposal for one in ranked if one.proposal.module.mm == numbers.module and one.proposal.pressure_angle < 0.36]
@@ -154,7 +154,7 @@ def test_a_wrong_scale_is_found_beside_a_bore():
     """Its width and bore are whole numbers in the drawing, and not in the scan."""
     numbers = GearNumbers(24, 2.5, 20.0, bore_diameter=30.0)
     effects = (Effect("scale", {"relative_ppm": 2500.0}),)
-    made = make_scan(Recipe(gear=numbers, pose="any", noise_um=5.0, jitter=1.0, effects=effects).of_size(25_000), 2)
+    made = make_scan(Recipe(gear=numbers, pose="any", noise_um=5.0, jitter=1.0, effects=effects).of_size(12_000), 2)
     best = find_candidates(made.points).ranked[0].proposal
     assert (best.module.mm, best.profile_shift, best.thinning) == (2.5, 0.0, 0.0)
 

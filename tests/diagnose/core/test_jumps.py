@@ -37,7 +37,7 @@ class DriftFrom(ScanDrift):
 @cache
 def clean():
     """Cells of a gear as drawn, and what is known of them."""
-    scan = make_scan(Recipe(jitter=1.0, noise_um=1e3 * NOISE, pose="none").of_size(15_000), 5)
+    scan = make_scan(Recipe(jitter=1.0, noise_um=1e3 * NOISE, pose="none").of_size(8_000), 5)
     located = locate(scan.points, GEAR)
     cells = bin_points(
         located.take(np.isin(located.surface, (FLANK, FILLET, ROOT, TIP))), CellGrid.for_scan(GEAR, len(located)), clip=0.3
