@@ -279,8 +279,9 @@ def write(
     Raises
     ------
     InputError
-        If the folder cannot be written to, a word of `also` is unknown, or a height lies off the face.
+        If it is no result of these, the folder cannot be written to, a word of `also` is unknown, or a height lies off the face.
     """
+    from gearwear.comparison.results import Results
     from gearwear.report.files.extras import EXTRAS
     from gearwear.report.files.meshing import write_study
     from gearwear.report.files.writing import output_folder
@@ -291,6 +292,8 @@ def write(
         with output_folder(Path(folder)) as stage:
             files = write_study(stage, result, loaded, law)
         return {**study_record(result, loaded, law), "files": files}
+    if not isinstance(result, Results):
+        raise InputError(f"result = {type(result).__name__}: one of compare or study_meshing would be right")
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")

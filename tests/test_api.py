@@ -150,6 +150,18 @@ class TestStages:
         with pytest.raises(gw.InputError, match="an axis from the bore needs bore_diameter"):
             gw.inspect(gear, gw.Settings(axis="bore"))
 
+    @pytest.mark.parametrize(("stage", "words"), [
+        (lambda: gw.register("design.toml", gw.read_scan(scanned()[1])), "design of type str: what gw.read_design"),
+        (lambda: gw.study_meshing("pair.toml", loss=0.1), "design of type str: what gw.read_design"),
+        (lambda: gw.register(scanned()[0], "scan.ply"), "scan of type str: what gw.read_scan"),
+        (lambda: gw.propose_design("scan.ply"), "scan of type str: what gw.read_scan"),
+        (lambda: gw.write(3, "out"), "result = int: one of compare or study_meshing"),
+    ])  # fmt: skip
+    def test_a_name_of_a_file_in_place_of_what_is_in_it_is_told(self, stage, words):
+        """Each ended in an AttributeError of a module that the user does not know."""
+        with pytest.raises(gw.InputError, match=words):
+            stage()
+
     def test_a_half_that_is_none_is_refused(self):
         with pytest.raises(gw.InputError, match="half = 'foo': lower or upper would be right"):
             gw.inspect(real_results().measured, half="foo")

@@ -211,7 +211,7 @@ def _others(best: Proposal, others: Sequence[Proposal]) -> list[str]:
     near = [proposal for proposal in others if proposal.cost < best.cost + NEAR]
     if not near:
         return ["Nothing else in use comes near."]
-    lines = ["Also near (less likely by this, where 6 is strong):"]
+    lines = ["Also near; the number says how much less likely, of which 6 is strong evidence:"]
     for proposal in near:
         residuals = ", ".join(f"{1e3 * residual:+z.0f}" for residual in proposal.residuals)
         lines.append(f"  {proposal.cost - best.cost:+5.1f}  {proposal.name}; remains {residuals} µm")

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.comparison.laying import laid_on, unstated_root
 from gearwear.design.gear import Gear
-from gearwear.design.pair import Design
+from gearwear.design.pair import Design, check_design
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.refusal import check_gear
 from gearwear.placing.views import PlacedScan
@@ -18,7 +18,8 @@ from gearwear.scan.units import READ_WITH, check_size, extents, other_unit, oute
 
 
 def check_part(design: Design, part: str | None) -> None:
-    """Refuse a part that the design has not."""
+    """Refuse a part that the design has not, and what is no design."""
+    check_design(design)
     if part is not None and part not in design.gears:
         raise InputError(f"part = {part}: the design has only {', '.join(design.gears)}")
 

@@ -87,6 +87,12 @@ class Design:
         return next((gear for name, gear in self.gears.items() if name != part), None)
 
 
+def check_design(design: object) -> None:
+    """Refuse what is no design, a file's name above all: the stages of the API take what `read_design` returns."""
+    if not isinstance(design, Design):
+        raise InputError(f"design of type {type(design).__name__}: what gw.read_design returns would be right")
+
+
 def opposite_hands(pinion: Gear, gear: Gear) -> bool:
     """Whether helix angles are opposite, as those of gears that mesh are; of a ring and its pinion: the same."""
     return abs(pinion.helix_angle + pinion.orientation * gear.orientation * gear.helix_angle) <= MAX_HELIX_DIFFERENCE

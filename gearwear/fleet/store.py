@@ -77,15 +77,13 @@ class Store:
         try:
             check_folder(self.folder)
         except InputError as error:
-            raise InputError(f"store = {error}") from None
+            raise InputError(f"{error}") from None
         with ExitStack() as held:
             with self._writing():
                 (self.folder / MANIFESTS).mkdir(parents=True, exist_ok=True)
                 alone = held.enter_context(tried(self.folder))
                 if alone is False:
-                    raise InputError(
-                        f"store = {self.folder}: another batch is at work there; its end, or another folder, would be right"
-                    )
+                    raise InputError(f"{self.folder}: another batch is at work there; its end, or another folder, would be right")
                 for folder in (self.folder, self.folder / MANIFESTS):
                     for remains in folder.glob(f"{HIDDEN}*"):
                         with suppress(OSError):
@@ -98,7 +96,7 @@ class Store:
         try:
             yield
         except OSError as error:
-            raise InputError(f"store = {unwritable(self.folder, error)}") from None
+            raise InputError(f"{unwritable(self.folder, error)}") from None
 
     def states(self) -> dict[str, State]:
         """State of every scan that has one, by key.
@@ -119,7 +117,7 @@ class Store:
             pass
         except OSError as error:
             raise InputError(
-                f"store = {self.folder}: cannot be read ({error.strerror or error}); the right to read it is needed"
+                f"{self.folder}: cannot be read ({error.strerror or error}); the right to read it is needed"
             ) from None
         return {stem: next(state for state, suffix in SUFFIXES.items() if suffix in of_scan) for stem, of_scan in found.items()}
 
@@ -206,7 +204,7 @@ class Store:
         """
         files = sorted((self.folder / MANIFESTS).glob("*.csv"))
         if not files:
-            raise InputError(f"store = {self.folder}: holds no fleet; the folder that gearwear batch wrote to would be right")
+            raise InputError(f"{self.folder}: holds no fleet; the folder that gearwear batch wrote to would be right")
         return list({row.key: row for file in files for row in _listed(file)}.values())
 
 

@@ -303,7 +303,7 @@ def _notes_on_uncertainty(scan: PreparedScan) -> list[str]:
     ]
     if factor > 1.0:
         notes.append(
-            f"{factor:.1f} of the scan's points are worth one independent point: its errors, or the surface's texture, hang together; "
+            f"{factor:.1f} of the scan's points are worth one independent point: its errors, or the surface's texture, are correlated; "
             f"every U is {np.sqrt(factor):.1f} times what the scatter of the points alone would say."
         )
     known = (
@@ -312,7 +312,7 @@ def _notes_on_uncertainty(scan: PreparedScan) -> list[str]:
         else "; the uncertainty of the registration is not in them. "
     )
     notes.append(
-        f"Uncertainties are from the scatter of the scan's points, how far it hangs together{known}"
+        f"Uncertainties are from the scatter of the scan's points, how far that is correlated{known}"
         "Systematic errors of the scanner are not in them."
     )
     return notes

@@ -12,7 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.given import check_number
-from gearwear.design.pair import Design
+from gearwear.design.pair import Design, check_design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.quantity import SPACE, not_zero, number, sentence
 from gearwear.design.side import Side
@@ -322,6 +322,7 @@ def study_meshing(
       shafts  The wear is taken up with the shafts 0.145 mm closer, at 114.355 mm.
       note    The gear's tip passes the pinion's interference point by 1.403 mm of roll; its undercut root clears it.
     """
+    check_design(design)
     if design.pair is None:
         raise InputError(f"{design.source or 'the design'}: has one gear; meshing needs [pinion] and [gear]")
     for name, value, allowed in (

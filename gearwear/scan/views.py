@@ -14,9 +14,13 @@ def views_of(scan: Scan | Sequence[Scan]) -> tuple[Scan, ...]:
     Raises
     ------
     InputError
-        If there is none, or planar sections stand beside others.
+        If there is none, or what is given is no scan, or planar sections stand beside others.
     """
     views = (scan,) if isinstance(scan, Scan) else tuple(scan)
+    other = next((view for view in views if not isinstance(view, Scan)), None)
+    if other is not None:
+        kind = type(scan if isinstance(scan, str) else other).__name__
+        raise InputError(f"scan of type {kind}: what gw.read_scan or gw.as_scan returns would be right")
     if not views:
         raise InputError("no scan is given; what gw.read_scan returns would be right")
     if len({view.planar for view in views}) > 1:

@@ -1,9 +1,13 @@
 import numpy as np
 import pytest
 
+from gearwear.api import example
+from gearwear.design.files.profiles import read_profiles
+from gearwear.design.files.toml import read_design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.side import Side
 from gearwear.design.surface import flank_points
+from gearwear.errors import InputError
 
 
 @pytest.fixture(scope="module")
@@ -36,3 +40,16 @@ def test_loss_is_the_depth_along_the_normal(nominal, pinion):
     at = float(nominal.radius[30])
     lost = float(pinion.thickness(at)) - profiles.thickness(at)[5, 1]
     assert lost == pytest.approx(2 * at * depth / pinion.base_radius, rel=1e-12)
+
+
+def test_a_gear_that_was_compared_by_itself_is_known_among_a_pair(tmp_path, pinion):
+    """By itself it was called "gear"; of the pair it is the pinion, by its teeth and circles."""
+    design = read_design(example())
+    radius = np.linspace(pinion.root_radius, pinion.tip_radius, 9)
+    half = np.broadcast_to(pinion.half_angle(radius), (12, 2, 2, 9))
+    for told in ("pinion", "gear"):
+        np.savez(tmp_path / "worn_profiles.npz", radius=radius, z=[0.0, 15.0], half_angle=half, part=np.array(told))
+        assert read_profiles(tmp_path, design)[0] == "pinion"
+    np.savez(tmp_path / "worn_profiles.npz", radius=radius, z=[0.0, 15.0], half_angle=half[:-1], part=np.array("gear"))
+    with pytest.raises(InputError, match="is of a gear with 11 teeth"):
+        read_profiles(tmp_path, design)

@@ -321,3 +321,11 @@ def test_no_wear_is_told_against_what_is_left_of_the_scan_where_that_is_more_tha
     for left, said in ((0.030, "the 30 µm RMS by which the scan is off the design"), (0.003, "the scan's scatter of 2.0 µm")):
         loop = replace(results.loop, noise=0.002, rms_after=left)
         assert said in verdict(changed(results, "measured.loop", loop)).replace("\u202f", " ")
+
+
+def test_the_first_warning_is_told_whole():
+    """A warning that ends "…, and an even loss of both sides could …" broke off before what it warns of."""
+    whole = f"{'where the teeth stand rests on tips, roots and fillets, and ' * 3}all may be thinner."
+    results = replace(fake_results(), notes=(whole, "a second one.", "a third one."))
+    said = " ".join(line for line, _ in lines(results, 80)).replace("\u00a0", " ")
+    assert whole[0].upper() + whole[1:] in said and "! and 2 more, in the report" in said

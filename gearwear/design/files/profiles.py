@@ -18,6 +18,7 @@ from gearwear.errors import InputError
 from gearwear.memory import check_memory
 
 NAME = "worn_profiles.npz"
+PARTS = ("pinion", "gear")
 KEYS = ("radius", "z", "half_angle", "part")
 WIDEST = 256
 """Bytes of one entry of an array: a number has 8, the word for the part 24."""
@@ -84,6 +85,10 @@ def read_profiles(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     except Exception as error:  # what numpy, zipfile and the tokenizer raise on a file that is no good has no end
         reason = next(iter(str(error).strip().splitlines()), type(error).__name__)[:120]
         raise InputError(f"{file}: cannot be read ({reason}); the {NAME} that gearwear compare writes would be right") from None
+    # A gear that was compared by itself may be called otherwise there: its teeth and circles say which of the pair it is.
+    fitting = [name for name, gear in design.gears.items() if _fits(gear, radius, half_angle)]
+    if part in PARTS and part not in fitting and fitting:
+        part = fitting[0]
     if part not in design.gears:
         raise InputError(f"{file}: is of a {part!r}, which the design does not have")
     gear = design.gears[part]
@@ -118,6 +123,12 @@ def _check_shapes(file: Path, shapes: dict[str, tuple[int, ...]], teeth: int) ->
         raise InputError(f"{file}: {error}") from None
 
 
+def _fits(gear: Gear, radius: Floats, half_angle: Floats) -> bool:
+    """Whether teeth and circles are those of a gear."""
+    low, high = sorted((gear.root_radius, gear.flank_end_radius))
+    return len(half_angle) == gear.teeth and bool(max(abs(radius[0] - low), abs(radius[-1] - high)) <= ON_CIRCLE)
+
+
 def _check(file: Path, gear: Gear, radius: Floats, z: Floats, half_angle: Floats) -> None:
     for name, values in (("radius", radius), ("z", z)):
         if not np.isfinite(values).all() or not (np.diff(values) > 0.0).all():
@@ -125,7 +136,7 @@ def _check(file: Path, gear: Gear, radius: Floats, z: Floats, half_angle: Floats
     if not np.isfinite(half_angle).all():
         raise InputError(f"{file}: half_angle must be finite and of shape (teeth, 2, {len(z)}, {len(radius)})")
     ends, root = sorted((gear.root_radius, gear.flank_end_radius)), 0 if gear.orientation > 0 else -1
-    if len(half_angle) != gear.teeth or max(abs(radius[0] - ends[0]), abs(radius[-1] - ends[1])) > ON_CIRCLE:
+    if not _fits(gear, radius, half_angle):
         low, first, last, high = apart(radius[0], ends[0], ends[1], radius[-1])
         raise InputError(
             f"{file}: is of a gear with {len(half_angle)} teeth from r = {low} to {high} mm, the design has {gear.teeth} from "

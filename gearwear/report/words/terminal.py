@@ -93,8 +93,9 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     warned = [text for text in doubts(results) if not text.startswith(("Unexplained", "Doubtful")) and text not in said_above]
     room = 3 if grave or broken else 4
     for i, text in enumerate(warned):
-        warning = wrapped(f"! {text}", width, 2)
-        if len(warning) > room - (i + 1 < len(warned)):
+        free = room - (i + 1 < len(warned))  # a line for how many more there are
+        warning = wrapped(f"! {text}", width, max(free, 1) if i == 0 else len(text))
+        if len(warning) > free:
             said.append((f"! and {len(warned) - i} more, in the report" if i else _cut(f"! {text}", width), "yellow"))
             break
         said += [(line, "yellow") for line in warning]
