@@ -36,7 +36,8 @@ RING = GearSpec(
 )
 ARC = replace(RING, cutter_teeth=None, cutter_tip_radius=None, fillet_radius=0.5, tip_chamfer=0.0, tip_rounding=0.3)
 SPREAD = {
-    "spur, folds at its base circle": GearSpec("gear", 19, 2.0, 10.0, end_chamfer=0.5),
+    "spur, folds at its base circle": GearSpec("gear", 10, 2.0, 10.0, profile_shift=0.5, end_chamfer=0.35),
+    "the same unshifted": GearSpec("gear", 19, 2.0, 10.0, end_chamfer=0.5),
     "undercut, rounded tips": GearSpec("gear", 12, 4.0, 12.0, tip_rounding=0.6, end_rounding=0.4, bore_diameter=16.0),
     "helical, chamfered tips": GearSpec(
         "gear", 24, 2.0, 20.0, helix_angle=0.35, tip_chamfer=0.3, end_chamfer=0.4, bore_diameter=20.0
