@@ -191,6 +191,7 @@ def write_pdf(path: Path, view: PageView) -> None:
     sheet = Frame(0, 0, WIDTH, HEIGHT, 0, 0, 0, 0)
     document.addPageTemplates([PageTemplate("text", [text]), PageTemplate("sheet", [sheet])])
     story = [*_first(view), *(flowable for section in view.sections for flowable in _section(section, charts))]
+    story += [_signature()]
     story += [flowable for figure in charts.later for flowable in (NextPageTemplate("sheet"), PageBreak(), Sheet(figure, charts))]
     below = " · ".join(filter(None, [view.title, view.marking, view.made_by]))
     document.build(story, canvasmaker=lambda *given, **more: Numbered(*given, charts=charts, below=below, **more))
@@ -279,6 +280,17 @@ def _first(view: PageView) -> Iterator[Flowable]:
         yield _grid([[picture, key]], [0.63 * INNER, 0.37 * INNER])
     else:
         yield from key
+
+
+def _signature() -> Table:
+    """A line to sign on, at the end of the text."""
+    row = [part for name in ("date", "name", "signature") for part in (_words(name, SMALL), "")]
+    lines = [("LINEBELOW", (at, 0), (at, 0), 0.6, HexColor(INK)) for at in (1, 3, 5)]
+    return _grid(
+        [row],
+        [0.08 * INNER, 0.17 * INNER, 0.08 * INNER, 0.27 * INNER, 0.1 * INNER, 0.3 * INNER],
+        [("TOPPADDING", (0, 0), (-1, 0), 40), *lines],
+    )
 
 
 def _section(section: blocks.Section, charts: Charts) -> Iterator[Flowable]:

@@ -38,7 +38,7 @@ def test_the_record_adds_up(study):
 def test_words_name_load_and_misalignment(study):
     assert load_words(study).replace("\u202f", " ") == "53.7 N m on the pinion, 100 N/mm, misaligned by 20 µm over the face"
     rows = loaded_rows(study)
-    assert all(len(row) == 3 for row in rows) and rows[1][0] == "the same, rigid"
+    assert all(len(row) == 3 for row in rows) and rows[1][0] == "the same, rigid, at the same positions"
     shown = lines(gw.study_meshing(gw.read_design(gw.example())), study)
     assert len(shown) <= 30 and all(len(text) <= 80 for text, _ in shown)
     assert [name for name, _ in loaded_lines(study)][:2] == ["transmission error", "mean lag"]

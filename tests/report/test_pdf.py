@@ -53,6 +53,14 @@ def test_every_page_has_its_number_and_says_of_what(pages):
         assert "S 12" in words
 
 
+def test_there_is_a_line_to_sign_on_behind_the_text_and_before_the_charts(pages):
+    """The report is "to be signed and sent", and had no place for it."""
+    words = [re.sub(r"\s+", " ", page.extract_text()) for page in pages]
+    (signed,) = [i for i, text in enumerate(words) if "date name signature" in text]
+    assert next(i for i, text in enumerate(words) if "Files written" in text) == signed
+    assert all("ISO 1328" in text for text in words[signed + 1 :])
+
+
 def test_pages_are_a4_and_none_is_empty(pages):
     for page in pages:
         assert (float(page.mediabox.width), float(page.mediabox.height)) == pytest.approx((841.9, 595.3), abs=0.1)

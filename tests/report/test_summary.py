@@ -19,7 +19,7 @@ from gearwear.comparison.notes import worn_notes
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.diagnose.pattern import Pattern
-from gearwear.report.words.terminal import ASCII, lines, print_summary
+from gearwear.report.words.terminal import ASCII, lines, print_summary, written
 from gearwear.report.words.verdict import doubts, key_figures, subject, verdict
 from gearwear.wear.breakage import Broken
 from tests.report.fake import bare_results, changed, fake_results, real_results
@@ -329,3 +329,14 @@ def test_the_first_warning_is_told_whole():
     results = replace(fake_results(), notes=(whole, "a second one.", "a third one."))
     said = " ".join(line for line, _ in lines(results, 80)).replace("\u00a0", " ")
     assert whole[0].upper() + whole[1:] in said and "! and 2 more, in the report" in said
+
+
+@pytest.mark.parametrize("number", [1, 9, 60])
+def test_files_that_have_no_room_are_counted(number):
+    """A list that ends "sections.dxf, …" did not say whether the coloured bodies that were asked for are there."""
+    names = [f"file_number_{i}.stl" for i in range(number)]
+    said = " ".join(line for line, _ in written("out", names, 80)).replace("\u00a0", " ")
+    told = said.count(".stl")
+    assert "…" not in said and said.startswith("Written to out: file_number_0.stl")
+    assert said.endswith(f"and {number - told} more" if told < number else names[-1])
+    assert len(written("out", names, 80)) <= 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,10 +13,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def wear_maps(axes: tuple[Axes, Axes, Axes], loop: SecondLoop) -> None:
-    """Mean depth over the flank, root at the left: measured, law, run; one scale for all three."""
+def wear_maps(axes: Sequence[Axes], loop: SecondLoop) -> None:
+    """Mean depth over the flank, root at the left: measured, law and, where effects were found and there is an axis for it, run; one scale for all."""
     place = loop.map
-    maps = (("measured", place.mean), ("wear law alone", loop.law), ("with the effects", loop.depth))
+    maps = [("measured", place.mean), ("wear law alone", loop.law), ("with the effects", loop.depth)][: len(axes)]
     top = 1e3 * max(float(values.max()) for _, values in maps)
     heights = np.linspace(0.0, place.gear.face_width, place.slices + 1)
     for axis, (title, values) in zip(axes, maps, strict=True):

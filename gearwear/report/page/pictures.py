@@ -232,15 +232,16 @@ def how_it_ran(running: SecondLoop) -> Picture:
     """The wear of the flanks as measured, by the law, and with the effects of running."""
 
     def draw() -> Figure:
-        figure = Figure(figsize=(FULL, 2.3))
-        axes = figure.subplots(1, 3, sharey=True)
+        number = 3 if running.effects else 2  # without effects the third would be the second again
+        figure = Figure(figsize=(FULL * (0.1 + 0.3 * number), 2.3))
+        axes = figure.subplots(1, number, sharey=True)
         figure.subplots_adjust(left=0.06, right=0.88, wspace=0.12)
-        figures.wear_maps((axes[0], axes[1], axes[2]), running)
+        figures.wear_maps(list(axes), running)
         return figure
 
     caption = (
         f"Mean depth of {len(running.map.teeth)} {running.map.side} flanks, root at the left: measured; by the wear law alone, which is alike across"
-        " the face; and of elastic teeth that wear, with the effects found. One scale."
+        f" the face{'; and of elastic teeth that wear, with the effects found' if running.effects else ''}. One scale."
     )
     return Picture(draw, "how-it-ran", "How the pair ran", caption)
 

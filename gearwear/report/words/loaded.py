@@ -41,7 +41,7 @@ def _values(contact: LoadedContact, spread: LoadedSpread) -> dict[str, str]:
 
     return {
         "transmission error, peak to peak": known("transmission_error", contact.peak_to_peak, "µm", 1e3),
-        "the same, rigid": f"{number(1e3 * contact.rigid_peak_to_peak, 1)}{um}",
+        "the same, rigid, at the same positions": f"{number(1e3 * contact.rigid_peak_to_peak, 1)}{um}",
         "first harmonic of the mesh": known("mesh_harmonic", float(contact.harmonics(1)[0]), "µm", 1e3),
         "mean lag by load": known("mean_lag", contact.mean_lag, "µm", 1e3),
         "mesh stiffness, mean": known("stiffness", float(stiff.mean()), "N/(mm µm)"),

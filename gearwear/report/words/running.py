@@ -9,7 +9,7 @@ from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence
 from gearwear.report.words.numbers import effect_title, or_words, quantity
 from gearwear.running.found import Errors, FoundRunning, SecondLoop
 
-HEAD = ("how the pair ran", "left, µm", "on teeth left out", "on parts of the face left out", "on double contact left out")
+HEAD = ("how the pair ran", "left", "on teeth left out", "on parts of the face left out", "on double contact left out")
 CAPTION = (
     "Root mean square of what is left of the mean depth of the worn flanks: by the wear law alone, and with each effect added; then on what was"
     " left out of the fit. An effect round the gear is judged tooth by tooth."

@@ -108,7 +108,12 @@ def written(folder: Path | str, names: Sequence[str], width: int = 80) -> list[t
     if not names:
         return []
     place = f"Written to {folder}: " if str(folder) else "Written: "
-    return [(line, "dim") for line in wrapped(place + ", ".join(names), width, 2)]
+    for kept in range(len(names), -1, -1):
+        more = f" and {len(names) - kept} more" if kept < len(names) else ""
+        said = wrapped(place + ", ".join(names[:kept]) + more, width, 3)
+        if len(said) <= 2:
+            break
+    return [(line, "dim") for line in said[:2]]
 
 
 def _loop(results: Results, width: int, most: int) -> list[str]:
