@@ -92,7 +92,7 @@ def test_an_unknown_effect_is_named_as_it_is():
 
 
 @pytest.mark.parametrize(
-    ("order", "often"), [(1.0, "once a revolution"), (2.0, "2 times a revolution"), (11.0, "11 times a revolution")]
+    ("order", "often"), [(1.0, "once a revolution"), (2.0, "twice a revolution"), (11.0, "11 times a revolution")]
 )
 def test_a_wave_of_the_table_goes_round_once_or_so_many_times(order, often):
     found = {

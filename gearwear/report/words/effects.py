@@ -50,5 +50,9 @@ def effect_words(name: str, parameters: Mapping[str, ParameterEstimate]) -> str:
         if below and not isinstance(first.value, tuple):
             shown = {**parameters, key: replace(first, value=-first.value)}
         phrase = known.phrase_below if below else known.phrase
-        return phrase.format(**{label: quantity(item) for label, item in shown.items()}).replace(" 1 times ", " once ")
+        return (
+            phrase.format(**{label: quantity(item) for label, item in shown.items()})
+            .replace(" 1 times ", " once ")
+            .replace(" 2 times ", " twice ")
+        )
     return effect_title(name) + (f" ({listed(named(parameters))})" if parameters else "")
