@@ -122,7 +122,7 @@ def test_a_view_of_something_else_is_refused():
         place([scan.points, ball], GEAR, [None, None])
 
 
-@pytest.mark.parametrize("count", [3, 4])
+@pytest.mark.parametrize("count", [3, pytest.param(4, marks=pytest.mark.long)])
 def test_views_of_one_gear_agree(count):
     """Scales and offsets of good views lie within their own ±, at a false alarm of 1 in 1,000; nothing is taken out of them, nor said."""
     _, placed = seen(count, 0.5 if count == 3 else 0.7)

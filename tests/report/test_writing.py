@@ -74,7 +74,7 @@ values = st.recursive(
 )
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(values)
 def test_any_report_becomes_json_that_every_reader_takes(value):
     text = json.dumps(finite(value), allow_nan=False)

@@ -143,9 +143,9 @@ def test_a_loss_that_is_not_sure_is_in_the_range_with_what_its_doubt_leaves_open
 def test_faint_wear_of_a_whole_side_is_within_what_it_may_come_to():
     """Sliding wear put under flanks whose effects were found without it: what it may come to holds it and grows by what is added; without any, and
     where no cell is looked at, it is none."""
-    measured = find_effects(registered(SCAN.points, GEAR))
+    measured = find_effects(registered(SCAN.points, GEAR), frozenset())  # that no side looks worn is another test's question
     cells, loop = measured.as_made, measured.loop
-    assert loop is not None and not loop.worn_sides
+    assert loop is not None
     sheets = make_side_maps(cells)
     none = np.zeros(sheets.deviation.shape, dtype=bool)
     points = cells.points
