@@ -84,6 +84,7 @@ def cadquery() -> ModuleType:
     return import_module("cadquery")
 
 
+@pytest.mark.long
 def test_cadquery_reads_every_file(cadquery, files, paper):
     for name, parts in (("pinion", ["pinion"]), ("gear", ["gear"]), ("pair", ["pinion", "gear"])):
         solids = cadquery.importers.importStep(str(files[name])).solids().vals()
@@ -94,6 +95,7 @@ def test_cadquery_reads_every_file(cadquery, files, paper):
             assert solid.Volume() == pytest.approx(gear.section_area() * gear.face_width, rel=1e-9)
 
 
+@pytest.mark.long
 def test_flanks_and_roots_survive_cadquery(cadquery, files, paper):
     solid = cadquery.importers.importStep(str(files["pinion"])).val()
     found = measure(build123d.Solid(solid.wrapped), paper.gears["pinion"])
@@ -101,12 +103,14 @@ def test_flanks_and_roots_survive_cadquery(cadquery, files, paper):
     assert found.fillet < 1e-8
 
 
+@pytest.mark.long
 def test_cadquery_reads_the_names_of_the_assembly(cadquery, files):
     assembly = cadquery.Assembly.importStep(str(files["pair"]))
     assert assembly.name == "pair"
     assert [child.name for child in assembly.children] == ["pinion", "gear"]
 
 
+@pytest.mark.long
 def test_build123d_and_cadquery_share_one_kernel(cadquery):
     # Unpinned they bring two OCP versions into one folder, and build123d no longer imports.
     box = build123d.Solid.make_box(1.0, 2.0, 3.0)

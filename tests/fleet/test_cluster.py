@@ -10,6 +10,7 @@ import sys
 import warnings
 from contextlib import ExitStack, contextmanager
 from functools import partial
+from importlib.util import find_spec
 
 import pytest
 
@@ -26,7 +27,8 @@ from tests.commands.doors import run as command
 from tests.fleet.fleets import contents, sections
 from tests.fleet.work import job, work
 
-distributed = pytest.importorskip("distributed", reason="needs the extra batch")
+if find_spec("distributed") is None:  # loaded where it is used: every process that collects this file would take half a second
+    pytest.skip("needs the extra batch", allow_module_level=True)
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::ResourceWarning"),  # Dask's own sockets and loops
@@ -64,6 +66,8 @@ def threads(number):
     """A client whose workers are so many threads of this process."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        import distributed
+
         with distributed.Client(
             processes=False, n_workers=number, threads_per_worker=1, dashboard_address=None, silence_logs=50
         ) as client:
@@ -164,7 +168,7 @@ def test_a_scheduler_that_is_gone_before_it_says_its_workers(tmp_path, monkeypat
 
         get_versions = refused
 
-    monkeypatch.setattr(distributed, "Client", Client)
+    monkeypatch.setattr("distributed.Client", Client)
     said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--scheduler", "tcp://10.0.0.5:8786")
     assert said.status == 2
     assert (
@@ -175,7 +179,7 @@ def test_a_scheduler_that_is_gone_before_it_says_its_workers(tmp_path, monkeypat
 
 
 def test_workers_that_cannot_be_started(tmp_path, monkeypatch):
-    monkeypatch.setattr(distributed, "LocalCluster", refused)
+    monkeypatch.setattr("distributed.LocalCluster", refused)
     said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--workers", "2")
     assert said.status == 2
     assert (
