@@ -178,7 +178,8 @@ def thickness(section: SectionThickness, place: str) -> Picture:
     return Picture(
         draw, "thick", "Thickness tooth by tooth",
         "The bar runs from the mean to the least, with a whisker of ± 2 standard deviations of the least. Unless the maker left the teeth too thick"
-        " or thin, a tooth is worn where the whole whisker lies below the dashed line. An open triangle is off the scale, its value beside it.",
+        " or thin, a tooth looks worn there where the whole whisker lies below the dashed line; of many teeth one may do so by chance. An open"
+        " triangle is off the scale, its value beside it.",
     )  # fmt: skip
 
 
