@@ -54,7 +54,8 @@ def seen_in(name: str) -> Survey:
 
 
 LONG = (
-    "right hand",
+    "steep",
+    "ring",
     "left hand, few teeth",
     "narrow, little",
     "groove, halves staggered",

@@ -101,7 +101,7 @@ def test_a_low_flank_may_have_lost_no_more_than_there_is_of_it():
 
 
 def test_flanks_seen_from_end_to_end_of_both_halves_are_seen_whole():
-    points = double_scan(TWO, 150_000, noise=0.005, seed=3).points
+    points = double_scan(TWO, 80_000, noise=0.005, seed=3).points
     measured = gw.register(Design({"gear": designed_double(TWO)}), gw.as_scan(points))
     assert measured.cells.grid.groove_rows > 0
     assert {name: share for name, share in measured.coverage.items() if name in {"flank", "fillet", "tip"} and share < 0.95} == {}

@@ -66,7 +66,7 @@ def found(start: float, closure: float, seed: int) -> tuple[float, float]:
         scaled = values[cells.seen] / np.sqrt(white[cells.seen])
         return scaled - base @ (base.T @ scaled)
 
-    aim, places = left(target), start + GEAR.pitch_angle * np.linspace(-1.5, 1.5, 145)
+    aim, places = left(target), start + GEAR.pitch_angle * np.linspace(-1.5, 1.5, 73)
     columns = [left(np.nan_to_num(sawtooth(place, 1.0))) for place in places]
     best = float(places[np.argmax([(column @ aim) ** 2 / (column @ column) for column in columns])])
     fit = Fit(
