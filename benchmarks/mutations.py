@@ -52,6 +52,15 @@ MUTATIONS = [
         ("inspection/radial.py", "0.01 * math.sqrt(d) + 0.8", "0.01 * math.sqrt(d) + 0.08", "inspection/test_radial.py"),
         ("inspection/radial.py", "1.0, 1.5, 2.5, 4.0", "1.0, 1.5, 2.0, 4.0", "inspection/test_radial.py"),
         ("brep/ends.py", "END_TOLERANCE = 2e-8", "END_TOLERANCE = 2e-3", "brep/test_ends.py"),
+        # leads and crownings of each side; views that lie apart
+        ("diagnose/effects/helix_crowning.py", "np.full(len(bulge), sound[0]) if len(sound) == 1 else points.side", "points.side", "diagnose/test_helix_crowning.py"),
+        ("diagnose/effects/helix_crowning.py", "variance = 0.25 *", "variance = 0.5 *", "diagnose/test_contract.py"),
+        ("diagnose/elimination.py", "along_face(fit.cells.grid, pattern) if as_cut else pattern.rms", "pattern.rms", "diagnose/core/test_elimination.py"),
+        ("diagnose/elimination.py", "along_face(fit.cells.grid, pattern) if as_cut else pattern.rms", "along_face(fit.cells.grid, pattern)", "diagnose/core/test_elimination.py"),
+        ("diagnose/fit.py", "as_cut = model[index].effect.kind is Kind.MANUFACTURE and", "as_cut = False and", "diagnose/core/test_fit.py"),
+        ("diagnose/fit.py", "model[index].effect.kind is Kind.MANUFACTURE and runs", "runs", "diagnose/core/test_fit.py"),
+        ("diagnose/as_views.py", "return size < apart or", "return", "diagnose/core/test_as_views.py"),
+        ("placing/layers.py", "(own**2 - quiet**2)", "(own**2)", "placing/test_layers.py"),
         # waves that stand in space
         ("diagnose/space_waves.py", "if not all(one.gain > rules().errors * one.error for one in told)", "if False", "diagnose/core/test_space_waves.py"),
         ("diagnose/space_waves.py", "sheet.weight > 0.0])) < rules().pattern_teeth", "sheet.weight > 0.0])) < 1", "diagnose/core/test_space_waves.py"),

@@ -13,7 +13,7 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, judge, with_levels
 from gearwear.diagnose.masks import folds
-from gearwear.diagnose.pattern import Pattern, find_patterns, joined, order_share
+from gearwear.diagnose.pattern import Pattern, along_face, find_patterns, joined, order_share, runs_along_face
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 
@@ -142,15 +142,17 @@ def _makeshift(
     """The weakest effect that stands in for a structure no effect explains; None where there is none.
 
     Where a pattern of some order is left, an effect of the same order that explains less than `makeshift` times as much is a piece of that
-    pattern under a wrong name.
+    pattern under a wrong name. What the maker cut along the face, a lead or a crowning, is no piece of a form of the profile.
     """
     columns = fit.columns(model)
     amplitudes, _ = problem.gram.solve(problem.columns(model))
     suspects = []
     for i, part in enumerate(fit.parts(model)):
         field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
+        as_cut = model[i].effect.kind is Kind.MANUFACTURE and runs_along_face(fit.cells.grid, field)
         for pattern in patterns:
-            small = not kept[i] and evidence[i].contribution < rules().makeshift * pattern.rms
+            left = along_face(fit.cells.grid, pattern) if as_cut else pattern.rms
+            small = not kept[i] and evidence[i].contribution < rules().makeshift * left
             if small and pattern.order is not None and order_share(fit.cells.grid, field, pattern.order) > rules().own_order:
                 suspects.append(i)
     return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None

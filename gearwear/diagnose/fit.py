@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, ROOT, TIP
 from gearwear.diagnose.columns import CellColumns
 from gearwear.diagnose.covariance import CellCovariance
@@ -17,6 +18,7 @@ from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.judge import beyond_chance, of_units, sandwich
 from gearwear.diagnose.own_waves import beyond_texture, neighbouring_waves, order_of
+from gearwear.diagnose.pattern import runs_along_face
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.shapes import shape_columns
@@ -217,21 +219,29 @@ class Fit:
         )
         greatest, number = 0.0, len(np.unique(points.tooth[self.use & teeth]))
         asked = beyond_chance(number, 2 * len(halves) * len(model))  # either way
-        for one, other in halves:
-            apart = 0.5 * (np.where(one, field, 0.0) - np.where(other, field, 0.0))
-            every = np.column_stack([columns, apart])
-            gram = self._gram(every)
-            size, inverse = gram.solve(np.arange(every.shape[1]))
-            alone = float(self.weight @ apart**2)
+        as_cut = model[index].effect.kind is Kind.MANUFACTURE and runs_along_face(self.cells.grid, field)
+        split = 0.5 * np.column_stack([np.where(one, 1.0, 0.0) - np.where(other, 1.0, 0.0) for one, other in halves])
+        of_sides = flank[:, None] & (points.side[:, None] == np.array([int(side) for side in Side]))
+        levels = (split[:, :, None] * of_sides[:, None]).reshape(len(field), -1)
+        every = np.hstack([columns, levels, split * field[:, None]])
+        gram = self._gram(every)
+        own, of_half, apart = np.split(np.arange(every.shape[1]), [columns.shape[1], columns.shape[1] + levels.shape[1]])
+        for at, beside in zip(apart, of_half.reshape(len(halves), -1), strict=True):
+            alone = float(gram.information[0, at, at])
+            # What a half has as a level of its own speaks against nothing that the maker cut along the face.
+            for which in (*([np.array([*own, *beside, at])] if as_cut else []), np.array([*own, at])):
+                size, inverse = gram.solve(which)
+                free = 1.0 / max(float(inverse[-1, -1]), 1e-300) >= rules().free_share * alone
+                if free:
+                    break
             # The other effects of the model, or its own size where one half hardly shows it, can take the difference up.
-            if 1.0 / max(float(inverse[-1, -1]), 1e-300) < rules().free_share * alone:
+            if not free:
                 continue
-            spread = sandwich(every, self.use, self.covariance, inverse)
-            of_cells = self.weight * (self.target - every @ size) * (every @ inverse[-1])
+            pull = every[:, which] @ inverse[-1] * self.weight
+            variance = float(pull @ self.covariance.apply(pull[:, None])[:, 0])
+            of_cells = (self.target - every[:, which] @ size) * pull
             of_teeth: Floats = np.bincount(points.tooth, np.where(teeth, of_cells, 0.0)).astype(np.float64)
-            if abs(size[-1]) > max(
-                rules().errors * math.sqrt(max(float(spread[-1, -1]), 0.0)), asked * of_units(of_teeth, number)
-            ):
+            if abs(size[-1]) > max(rules().errors * math.sqrt(max(variance, 0.0)), asked * of_units(of_teeth, number)):
                 greatest = max(greatest, abs(float(size[-1])))
         return greatest
 

@@ -151,6 +151,19 @@ def order_share(grid: CellGrid, field: Floats, order: int) -> float:
     return float(np.nanmean(np.where(np.isfinite(sides), part, np.nan) ** 2)) / max(whole, 1e-300)
 
 
+def runs_along_face(grid: CellGrid, field: Floats) -> bool:
+    """Whether a field (m,) varies along the face of the flanks, and along nothing else there."""
+    flanks = np.nan_to_num(grid.flank_shape(field))
+    along, across = (np.mean((flanks - flanks.mean(axis=axis, keepdims=True)) ** 2) for axis in (2, 3))
+    few = rules().even_share * np.mean(flanks**2)
+    return bool(along > few > across)
+
+
+def along_face(grid: CellGrid, pattern: Pattern) -> float:
+    """Root mean square on the tooth sides, mm, of what of a pattern varies along the face alone."""
+    return float(np.sqrt(np.mean(grid.sides(pattern.field).mean(axis=3) ** 2)))
+
+
 def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int | None]) -> Pattern | None:
     sides = grid.sides(value)
     if sides.shape[2] < rules().pattern_rows or sides.shape[0] < rules().pattern_teeth:

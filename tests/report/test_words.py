@@ -77,12 +77,19 @@ def test_every_effect_of_the_catalogue_has_words_that_hold_its_size(effect):
 
 @pytest.mark.parametrize("effect", [one for one in catalogue() if one.phrase_below], ids=lambda effect: effect.name)
 def test_words_of_a_signed_effect_follow_its_sign(effect):
-    (parameter,) = effect.parameters
+    parameter = effect.parameters[0]
     size = {sign: {parameter.name: ParameterEstimate(sign * 5.0, 1.0, parameter.unit)} for sign in (1, -1)}
     words = {sign: spoken(effect_words(effect.name, item)) for sign, item in size.items()}
     assert words[1] != words[-1]
     assert all("5 ± 1" in text or "5.0 ± 1.0" in text for text in words.values())
     assert "−" not in words[-1]
+
+
+def test_sides_of_their_own_are_told_in_place_of_their_mean():
+    """The mean of a bulge and a hollow says nothing."""
+    sides = {"crowning_um": 1.0, "left_um": 6.0, "right_um": -4.0}
+    text = spoken(effect_words("helix_crowning", {name: ParameterEstimate(value, 1.0, "um") for name, value in sides.items()}))
+    assert text == "flanks crowned lengthwise by 6.0 ± 1.0 µm on the left and −4.0 ± 1.0 µm on the right"
 
 
 def test_an_unknown_effect_is_named_as_it_is():

@@ -83,8 +83,8 @@ class Context:
         Sides worn where their mate ran, whose flanks beside it are as made and are not left out.
     absent : frozenset of int
         Teeth that are missing or were not seen: what each tooth has of its own is not known of these.
-    views_apart : bool
-        Whether views that do not quite lie on each other may have been put together in the scan.
+    views_apart : float
+        How far views that may have been put together in the scan, and do not quite lie on each other, lie from their mean, mm; 0 where none do.
     pitch : float or None
         Without a mate: length of roll of the pitch point, mm, as what a side has lost shows it; None: at the reference circle.
     """
@@ -102,7 +102,7 @@ class Context:
     worn: frozenset[Side] = frozenset()
     faces: tuple[ActiveFace, ...] = ()
     absent: frozenset[int] = frozenset()
-    views_apart: bool = False
+    views_apart: float = 0.0
     pitch: float | None = None
 
     @property
@@ -160,6 +160,9 @@ class Effect(Protocol):
     """What the effect is in a sentence, as an engineer would say it, with {parameter} where a number goes."""
     phrase_below: ClassVar[str]
     """The same where the first parameter is below 0, whose magnitude is then said; "" where the words do not depend on the sign."""
+    phrase_of_sides: ClassVar[str]
+    """The same where left and right flanks have an amplitude of their own, for which all parameters but the first stand; "" where they never have, or
+    always. The first parameter is told either way."""
     group: ClassVar[str]
     """Identifiability group on flanks alone (reference: G1 … G7), "" where it has none."""
     tooth_specific: ClassVar[bool]
@@ -231,6 +234,7 @@ class CatalogueEffect:
     """
 
     phrase_below: ClassVar[str] = ""
+    phrase_of_sides: ClassVar[str] = ""
     group: ClassVar[str] = ""
     tooth_specific: ClassVar[bool] = False
     usual: ClassVar[bool] = False

@@ -42,7 +42,10 @@ def effect_words(name: str, parameters: Mapping[str, ParameterEstimate]) -> str:
     'a scan that is 120.0\\u202f±\\u202f5.2\\u202fppm too small'
     """
     known = named_effects().get(name)
-    if known is not None and all(parameter.name in parameters for parameter in known.parameters):
+    if known is not None and known.phrase_of_sides and len(parameters) == len(known.parameters):
+        return known.phrase_of_sides.format(**{label: quantity(item) for label, item in parameters.items()})
+    told = () if known is None else known.parameters[:1] if known.phrase_of_sides else known.parameters
+    if known is not None and all(parameter.name in parameters for parameter in told):
         key = known.parameters[0].name
         first = parameters[key]
         below = bool(known.phrase_below) and not isinstance(first.value, tuple) and first.value < 0.0

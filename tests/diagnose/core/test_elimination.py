@@ -209,10 +209,19 @@ def test_what_falls_as_a_piece_of_a_pattern_speaks_against_no_other():
     """A slope along the profile, and two smaller effects of all teeth beside a ripple that none of them is: these are dropped as pieces of it, and what
     they leave makes it larger than half of the slope; what the whole model left is not."""
     ripple = 0.004 * np.cos(3.5 * np.pi * AT.across)
-    small = [(Toy("lean"), ZETA), (Toy("twist"), U * ZETA)]
-    made = 0.011 * U + 0.004 * ZETA + 0.004 * U * ZETA
+    small = [(Toy("bow"), U**2 - np.mean(U**2)), (Toy("twist"), U * ZETA)]
+    made = 0.011 * U + 0.006 * small[0][1] + 0.004 * U * ZETA
     kept, orders = stood(made + ripple, (Toy("slope"), U), *small)
     assert kept == {"slope"} and orders == [0]
+
+
+def test_a_lead_is_no_piece_of_a_ripple_along_the_profile_but_of_steps_along_the_face():
+    """Of what the maker does; what only looks like a lead, of an instrument, falls beside either."""
+    lead = (Toy("lead", kind=Kind.MANUFACTURE), ZETA)
+    ripple, steps = 0.004 * np.cos(3.5 * np.pi * AT.across), 0.006 * np.sign(np.sin(4.0 * np.pi * AT.z))
+    assert stood(0.004 * ZETA + ripple, lead) == ({"lead"}, [0])
+    assert stood(0.004 * ZETA + steps, lead) == (set(), [0])
+    assert stood(0.004 * ZETA + ripple, (Toy("askew", kind=Kind.MOUNTING), ZETA)) == (set(), [0])
 
 
 def test_a_pattern_of_another_order_harms_no_effect():

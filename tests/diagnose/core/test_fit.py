@@ -5,6 +5,7 @@ import pytest
 
 from gearwear.design.surface import FLANK
 from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import design_unit
 from gearwear.diagnose.judge import sandwich
 from gearwear.diagnose.masks import folds
@@ -88,6 +89,23 @@ def test_an_effect_of_one_half_alone_is_as_uneven_as_can_be(name, half):
     amplitudes, _ = fit.problem(1.0, None).gram.solve(np.arange(2))
     uneven = fit.uneven(model, amplitudes, 0)
     assert uneven == (0.0 if name == "everywhere" else pytest.approx(1.0 / half(at).mean(), rel=0.02))
+
+
+@pytest.mark.parametrize(("kind", "lower", "upper"), [(Kind.MANUFACTURE, 0.0, 0.2), (Kind.MEASUREMENT, 0.6, 2.0)])
+def test_halves_of_the_profile_at_levels_of_their_own_make_what_the_maker_cut_along_the_face_not_uneven(kind, lower, upper):
+    """The mean of a bow is a level; what only looks like one stays held to it. A bow of one half alone is uneven whoever made it."""
+    one, rng = grid(), np.random.default_rng(6)
+    at = sides_of(one)
+    bow, tip = (2.0 * at.z - 1.0) ** 2, at.across > 0.55
+    noise = NOISE / np.sqrt(COUNT) * rng.normal(size=at.z.shape)
+
+    def uneven(there):
+        fit = fit_of(one, there + noise, [(Toy("bow", kind=kind), bow[..., None])], NOISE, COUNT)
+        amplitudes, _ = fit.problem(1.0, None).gram.solve(np.arange(2))
+        return fit.uneven(fit.dictionary.candidates, amplitudes, 0)
+
+    assert lower <= uneven(0.01 * bow + np.where(tip, 0.005, -0.005)) <= upper
+    assert uneven(0.01 * np.where(tip, bow, 0.0)) > 0.6
 
 
 def test_the_design_unit_is_one_for_independent_cells_and_the_variance_ratio_for_blocks_that_move_as_one():
