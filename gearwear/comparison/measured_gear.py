@@ -30,7 +30,7 @@ from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells
-from gearwear.placing.layers import UNEASY, layers_apart, said_of_layers
+from gearwear.placing.layers import how_far_apart, layers_apart, said_of_layers
 from gearwear.placing.low_tips import below_tips
 from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose
@@ -228,7 +228,7 @@ class MeasuredGear(Card):
     def remarks(self) -> tuple[str, ...]:
         """Notes on how the numbers came about."""
         smoothing = smoothing_of(self.located, len(self.scans))
-        if self.context.views_apart and not self.layered.any():
+        if self.context.views_apart > 0.0 and not self.layered.any():
             smoothing = (VIEWS_MAY_LIE_APART,)
         sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
         told = None if self.mark is None else self.mark.sentence
@@ -460,7 +460,7 @@ def _in_cells(
         first = streamed.first.cells
     context = _context(first, placed, design, name, planar)
     absent = frozenset(piece.tooth for piece in broken if piece.whole)
-    apart = len(scans) == 1 and bool(layers_apart(first, UNEASY).any())
+    apart = how_far_apart(first) if len(scans) == 1 else 0.0
     context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent, views_apart=apart)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(

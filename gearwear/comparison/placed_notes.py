@@ -109,7 +109,7 @@ def _or_a_view(effect: FoundEffect) -> FoundEffect:
 
 VIEWS_MAY_LIE_APART = (
     "points scatter more on some teeth than on others, on flanks and tips alike: views that do not quite lie on each other may have been put together in this "
-    "scan; effects that they would leave have a view among their alternatives"
+    "scan; effects that they may have left, and all that are smaller than they lie apart, have a view among their alternatives"
 )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.surface import FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.effects.base import polar_angle
+from gearwear.diagnose.rules import rules
 
 QUARTERS = 4
 """Views of a gear that turns see a quarter of it and more."""
@@ -38,6 +39,12 @@ def share_moved(points: SurfacePoints, field: Floats, used: Bools) -> float:
     motion = np.column_stack([teeth.normal, np.cross(teeth.position, teeth.normal)])
     width = 2.0 * np.pi / QUARTERS
     return max(_explained(motion, value, np.floor((angle + shift * width / BORDERS) / width)) for shift in range(BORDERS)) / whole
+
+
+def may_be_views(points: SurfacePoints, field: Floats, used: Bools, size: float, apart: float) -> bool:
+    """Whether views that lie `apart` from their mean, mm, may have left an effect of root mean square `size`: as they may all that is no larger than
+    that, and what is moved quarters; others as `share_moved`."""
+    return size < apart or share_moved(points, field, used) >= rules().moved
 
 
 def _explained(motion: Floats, value: Floats, quarter: Floats) -> float:

@@ -13,7 +13,7 @@ from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.quantity import NORMAL_95, counted, pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.diagnose.as_views import share_moved
+from gearwear.diagnose.as_views import may_be_views
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
@@ -348,7 +348,9 @@ def account(
                 candidate=candidate,
                 amplitudes=amplitudes[part],
                 parameters=parameters,
-                alternatives=_or_views(alternatives(problem, model, i), fit, problem.context, candidate, amplitudes[part]),
+                alternatives=_or_views(
+                    alternatives(problem, model, i), fit, problem.context, candidate, amplitudes[part], evidence[i].size
+                ),
                 evidence=evidence[i],
                 rms_before=steps[i][0],
                 rms_after=steps[i + 1][0],
@@ -401,13 +403,15 @@ def _unnamed(candidate: Candidate, evidence: Evidence) -> bool:
     return candidate.effect.kind is Kind.FORM or evidence.faint
 
 
-def _or_views(names: tuple[str, ...], fit: Fit, context: Context, candidate: Candidate, amplitudes: Floats) -> tuple[str, ...]:
+def _or_views(
+    names: tuple[str, ...], fit: Fit, context: Context, candidate: Candidate, amplitudes: Floats, size: float
+) -> tuple[str, ...]:
     """The alternatives of an effect, with a view out of place where views may lie apart in the scan and may have done the same."""
-    if not context.views_apart or candidate.name == VIEW_REGISTRATION or VIEW_REGISTRATION in names:
+    if context.views_apart == 0.0 or candidate.name == VIEW_REGISTRATION or VIEW_REGISTRATION in names:
         return names
     field = fit.dictionary.take(candidate.columns) @ amplitudes
-    moved = share_moved(fit.cells.points, field, fit.use)
-    return tuple(sorted((*names, VIEW_REGISTRATION))) if moved >= rules().moved else names
+    by_views = may_be_views(fit.cells.points, field, fit.use, size, context.views_apart)
+    return tuple(sorted((*names, VIEW_REGISTRATION))) if by_views else names
 
 
 def form_of_all(patterns: tuple[Pattern, ...], cells: int) -> Floats:

@@ -6,6 +6,8 @@ does so on flanks alone, a burr on tips alone.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
@@ -45,6 +47,20 @@ def layers_apart(cells: Cells, loud: float = LOUD) -> Bools:
     return flanks if float((flanks & tips).mean()) >= LEAST_SHARE else np.zeros(teeth, dtype=np.bool_)
 
 
+def how_far_apart(cells: Cells) -> float:
+    """How far layers that may lie apart (`UNEASY`) lie from their mean, root mean square, mm; 0 where there are none.
+
+    What points of a cell scatter on the flanks of these teeth beyond a quiet quarter of them, the median.
+    """
+    grid, known, apart = cells.grid, _known_scatter(cells), layers_apart(cells, UNEASY)
+    beyond = list[float]()
+    for side in Side if apart.any() else ():
+        typical, quiet = _typical(grid.flank_shape(known)[:, side.index].reshape(grid.gear.teeth, -1))
+        own = typical[apart & (typical > UNEASY * quiet)]
+        beyond += (own**2 - quiet**2).tolist()
+    return math.sqrt(float(np.median(beyond))) if beyond else 0.0
+
+
 def said_of_layers(cells: Cells, apart: Bools) -> tuple[str, ...]:
     """A sentence where layers lie apart on some teeth, (teeth,)."""
     if not apart.any():
@@ -72,9 +88,14 @@ def _told(count: Floats, loud: float) -> Bools:
 
 def _loud(scatter: Floats, loud: float) -> Bools:
     """On which teeth points scatter so many times as much as on a quiet quarter of them, by the cells of each, (teeth, n)."""
-    seen = np.isfinite(scatter).any(axis=1)
-    result = np.zeros(len(scatter), dtype=np.bool_)
-    if seen.any():
-        typical = np.nanmedian(scatter[seen], axis=1)
-        result[seen] = typical > loud * float(np.quantile(typical, 0.25))
-    return result
+    typical, quiet = _typical(scatter)
+    return np.asarray(typical > loud * quiet, dtype=np.bool_)
+
+
+def _typical(scatter: Floats) -> tuple[Floats, float]:
+    """Typical scatter of the cells of each tooth, from (teeth, n), nan where none is known, and that of a quiet quarter of the teeth."""
+    seen, typical = np.isfinite(scatter).any(axis=1), np.full(len(scatter), np.nan)
+    if not seen.any():
+        return typical, math.nan
+    typical[seen] = np.nanmedian(scatter[seen], axis=1)
+    return typical, float(np.quantile(typical[seen], 0.25))

@@ -47,3 +47,18 @@ def test_views_that_fit_are_not_doubted():
     measured, wear = worn(0.0)
     assert not measured.layered.any()
     assert OpenVolume(measured, wear, ()).layered == 0.0
+
+
+def test_all_that_is_named_of_a_perfect_gear_may_be_the_views():
+    """A view of a third of the gear, its borders blended, out of place by 27 µm and nothing else: no effect stands without a view beside it."""
+    scan = make_scan(Recipe(jitter=1.0, noise_um=4.0, pose="none").of_size(30_000), 3)
+    points = true_pose(scan).apply(scan.points)
+    middle = 2.1
+    off = np.abs((np.arctan2(points[:, 1], points[:, 0]) - middle + np.pi) % (2.0 * np.pi) - np.pi)
+    moved = np.random.default_rng(3).random(len(points)) < np.clip((1.2 - off) / 0.7, 0.0, 1.0)
+    toward, across = np.array([np.cos(middle), np.sin(middle), 0.0]), np.array([-np.sin(middle), np.cos(middle), 0.0])
+    shifted = points + np.where(moved[:, None], 0.012 * (across - 2.0 * toward), 0.0)
+    measured = find_effects(register(Design({"gear": designed()}), as_scan(shifted)), frozenset())
+    assert 0.004 < measured.context.views_apart < 0.0135  # at most half of what they are apart
+    assert measured.loop is not None and measured.loop.effects
+    assert all("view_registration" in {effect.name, *effect.alternatives} for effect in measured.loop.effects)

@@ -8,7 +8,7 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import flank_points
-from gearwear.diagnose.as_views import share_moved
+from gearwear.diagnose.as_views import may_be_views, share_moved
 from gearwear.diagnose.rules import rules
 
 GEAR = Gear.from_spec(GearSpec("gear", 20, 3.0, 20.0))
@@ -58,6 +58,13 @@ def test_quarters_that_were_moved_are_told_whole():
 )
 def test_slopes_and_waves_may_be_views_and_forms_are_not(field, may_be):
     assert (share_moved(POINTS, field, EVERY) >= rules().moved) is may_be
+
+
+def test_what_is_no_larger_than_views_lie_apart_may_be_theirs_whatever_it_looks_like():
+    """Pitch errors of 3 µm RMS beside views that lie 4 or 2 µm off; a slope however large is what moved quarters leave."""
+    pitch = 0.003 * SIDE * np.sign(np.random.default_rng(2).normal(size=20))[POINTS.tooth]
+    assert may_be_views(POINTS, pitch, EVERY, 0.003, 0.004) and not may_be_views(POINTS, pitch, EVERY, 0.003, 0.002)
+    assert may_be_views(POINTS, 0.1 * SIDE * HEIGHT, EVERY, 0.03, 0.002)
 
 
 def test_of_nothing_no_view_takes_a_share():
