@@ -73,8 +73,9 @@ LONGEST = (
 
 TOGETHER = (
     {
-        "test_api.py", "comparison/test_accord.py", "comparison/test_views.py", "diagnose/core/test_smoothing.py", "report/test_figures.py",
-        "report/test_formats.py", "report/test_loaded_words.py", "report/test_page.py", "report/test_publishing.py", "report/test_schema.py", "report/test_summary.py",
+        "test_api.py", "comparison/test_accord.py", "comparison/test_measured_thinning.py", "comparison/test_views.py",
+        "diagnose/core/test_smoothing.py", "report/test_figures.py", "report/test_formats.py", "report/test_loaded_words.py",
+        "report/test_page.py", "report/test_publishing.py", "report/test_schema.py", "report/test_summary.py",
         "report/test_surfaces.py", "report/test_wear_law_words.py", "report/test_words.py",
     },
     {
