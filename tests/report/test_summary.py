@@ -160,7 +160,7 @@ def test_limits_down_to_nothing_are_no_nought_where_the_deepest_place_is_surely_
         said = verdict(opened).replace("\u202f", " ").replace("\u00a0", " ")
         assert key_figures(opened)[0].value.replace("\u202f", " ") == "up to 92 mm³"
         assert said.startswith("Up to 92 mm³ of metal is gone from 3 left flanks") != none
-        assert said.startswith("3 left flanks look worn; up to 92 mm³ of metal is missing there, which may be none") == none
+        assert said.startswith("3 left flanks may be worn: up to 92 mm³ of metal is missing there, which may be none") == none
 
 
 def test_what_faint_wear_may_come_to_is_told_of_a_gear_without_any():

@@ -104,7 +104,7 @@ def _wear_found(results: Results) -> str:
     where = which_flanks(wear.regions, wear.found)
     text = f"{lost_words(results)} is gone from {where}"
     if may_be_none(results):
-        text = f"{where} {'looks' if len(wear.regions) == 1 else 'look'} worn; {lost_words(results)} is missing there, which may be none"
+        text = f"{where} may be worn: {lost_words(results)} is missing there, which may be none"
     if len(wear.regions) == 1:
         text += f", {depth} deep at its deepest" if " to " in depth.replace(SPACE, " ") else f", up to {depth} deep"
     else:
