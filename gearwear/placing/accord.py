@@ -159,8 +159,7 @@ def view_accords(views: Sequence[Cells], noise: float, ignore: frozenset[int] = 
     total = np.maximum(count.sum(axis=0), 1.0)
     columns = [_columns(view, cells) for view in views]
     blocks, targets, weights, owner, flank = [], [], [], [], []
-    points = views[0].points
-    flanks = ((points.surface.astype(np.int64) * views[0].grid.gear.teeth + points.tooth) * 2 + (points.side > 0))[cells]
+    flanks = views[0].part[cells]
     for i, columns_of_view in enumerate(columns):
         at = count[i] > 0.0
         block = np.zeros((int(at.sum()), OWN * len(views)))
@@ -276,8 +275,7 @@ def _alone(view: Cells, shared: int, noise: float, ignore: frozenset[int]) -> Vi
         residual = d - a @ solution
         scale = max(median_scale(residual)[1], 1e-9)
         share, slope = tukey_weight(residual, scale), tukey_slope(residual, scale)
-    cluster = (points.surface[part].astype(np.int64) * view.grid.gear.teeth + points.tooth[part]) * 2 + (points.side[part] > 0)
-    spread = clustered(a, share * weight * residual, slope * weight, cluster)
+    spread = clustered(a, share * weight * residual, slope * weight, view.part[part])
     own, std = solution / size, np.where(np.diag(spread) > 0.0, np.sqrt(np.maximum(np.diag(spread), 0.0)) / size, np.inf)
     return ViewAccord(
         shared=shared,

@@ -276,9 +276,9 @@ class CellGrid:
         start, size = self.blocks[FLANK]
         return values[start : start + size].reshape(self.gear.teeth, 2, self.rows, self.flank)
 
-    def on_flanks(self, flanks: Bools) -> Bools:
-        """What is true of whole flanks, (teeth, 2), on all of their cells, (m,); False elsewhere."""
-        result = np.zeros(self.count, dtype=bool)
+    def on_flanks(self, flanks: NDArray[Value]) -> NDArray[Value]:
+        """Values of whole flanks, (teeth, 2), on all of their cells, (m,); zero (or False) elsewhere."""
+        result = np.zeros(self.count, dtype=flanks.dtype)
         self.flank_shape(result)[...] = flanks[:, :, None, None]
         return result
 
@@ -366,6 +366,12 @@ class Cells:
     def seen(self) -> Bools:
         """Cells with a deviation."""
         return self.count > 0
+
+    @property
+    def part(self) -> Ints:
+        """(m,) number of the tooth's surface that a cell is of, flanks and fillets of either side apart: errors hang together on it."""
+        p = self.points
+        return (p.surface.astype(np.int64) * self.grid.gear.teeth + p.tooth) * 2 + (p.side > 0)
 
     @property
     def motion(self) -> Floats:

@@ -492,9 +492,7 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> CellFit:
         if moved < 1e-10:
             break
     residual = d - columns @ solution
-    p = cells.points
-    cluster = (surface.astype(np.int64) * cells.grid.gear.teeth + p.tooth[part]) * 2 + (p.side[part] > 0)
-    sandwich = clustered(columns, weight * residual, tukey_slope(residual, scale) * base, cluster)
+    sandwich = clustered(columns, weight * residual, tukey_slope(residual, scale) * base, cells.part[part])
     motion, covariance = np.zeros(6), np.zeros((6, 6))
     motion[free] = -solution[:moving]
     covariance[np.ix_(free, free)] = sandwich[:moving, :moving]

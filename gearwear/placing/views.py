@@ -363,7 +363,7 @@ def _thin_overlap(overlap: Overlap, label: Ints, position: Floats) -> tuple[Bool
     draw = evenly_drawn(np.hypot(position[:, 0], position[:, 1]) / m, np.abs(position[:, 2] - middle) / m, DRAWN_BY)
     keep = ~inside | (draw < share[np.where(inside, cell, 0)])
     weight = np.where(np.isfinite(mean), count, 0.0)
-    overlapping = ((weight > 0).sum(axis=0) > 1) & (bin_surface(grid) < END_LOW)
+    overlapping = ((weight > 0).sum(axis=0) > 1) & (overlap.views[0].points.surface < END_LOW)
     consensus = (np.nan_to_num(mean) * weight).sum(axis=0) / np.maximum(weight.sum(axis=0), 1.0)
     offset, mismatch = np.zeros(views), np.zeros(views)
     for view in range(views):
@@ -373,11 +373,3 @@ def _thin_overlap(overlap: Overlap, label: Ints, position: Floats) -> tuple[Bool
             offset[view] = np.median(difference)
             mismatch[view] = np.sqrt(np.mean(np.clip(difference, *np.quantile(difference, [0.01, 0.99])) ** 2))
     return keep, offset, mismatch
-
-
-def bin_surface(grid: CellGrid) -> Ints:
-    """Surface code of every cell of a grid, (m,)."""
-    surface = np.zeros(grid.count, np.int8)
-    for code, (start, size) in grid.blocks.items():
-        surface[start : start + size] = code
-    return surface
