@@ -118,22 +118,22 @@ class FarReach:
     def of(cls, points: SurfacePoints, cell: Ints, grid: CellGrid) -> FarReach:
         """What n points say, each in its cell (−1: none)."""
         index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
-        if grid.rows == 1 or not len(index):
-            return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan), _inner(grid))
-        cells, deviation = cell[index], points.deviation[index]
-        centre = _surroundings(cells, deviation, grid)
-        scale = _scale(deviation - centre[cells], _flank(cells, grid), 2 * grid.gear.teeth)
-        on_cells = _on_flanks(np.repeat(scale, grid.rows * grid.flank), grid, np.nan)
-        return cls(grid, centre, FAR_STDS * on_cells + np.maximum(apart(centre, grid) - on_cells, 0.0), _inner(grid))
+        return cls._about(cell[index], points.deviation[index], grid)
 
     @classmethod
     def round(cls, cells: Cells, noise: float) -> FarReach:
         """What the cells of a pass before say; `noise` is the scatter of points, mm."""
-        grid, seen = cells.grid, np.flatnonzero(cells.seen & (cells.points.surface == FLANK))
-        if grid.rows == 1 or not len(seen):
+        seen = np.flatnonzero(cells.seen & (cells.points.surface == FLANK))
+        return cls._about(seen, cells.points.deviation[seen], cells.grid, noise)
+
+    @classmethod
+    def _about(cls, cell: Ints, deviation: Floats, grid: CellGrid, noise: float | None = None) -> FarReach:
+        """What deviations in cells of flanks say; without `noise` by the scale of each flank."""
+        if grid.rows == 1 or not len(cell):
             return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan), _inner(grid))
-        centre = _surroundings(seen, cells.points.deviation[seen], grid)
-        return cls(grid, centre, FAR_STDS * noise + np.maximum(apart(centre, grid) - noise, 0.0), _inner(grid))
+        centre = _surroundings(cell, deviation, grid)
+        scale: Floats | float = grid.on_flanks(_scales(deviation - centre[cell], cell, grid)) if noise is None else noise
+        return cls(grid, centre, FAR_STDS * scale + np.maximum(apart(centre, grid) - scale, 0.0), _inner(grid))
 
     def tally(self, points: SurfacePoints, cell: Ints) -> FarTally:
         """The far ones among points, each in its cell (−1: none)."""
@@ -219,29 +219,22 @@ def _surroundings(cell: Ints, deviation: Floats, grid: CellGrid) -> Floats:
     around[:3, ..., 0] = around[6:, ..., 0] = np.nan
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
-        middle = np.asarray(np.nanmedian(around, axis=0), dtype=np.float64)
-    return _on_flanks(middle, grid, np.nan)
+        sheets[...] = np.nanmedian(around, axis=0)
+    return median
 
 
-def _on_flanks(values: Floats, grid: CellGrid, elsewhere: float) -> Floats:
-    """(m,) values of (teeth, 2, rows, flank) cells on all cells."""
-    result = np.full(grid.count, elsewhere)
-    start, size = grid.blocks[FLANK]
-    result[start : start + size] = values.ravel()
-    return result
-
-
-def _scale(off: Floats, flank: Ints, flanks: int) -> Floats:
-    """(flanks,) scale about 0 on each flank, not less than the typical flank's."""
-    result = np.array([scale_about(off[flank == number]) for number in range(flanks)])
-    return np.asarray(np.fmax(result, np.nanmedian(result)), dtype=np.float64)
+def _scales(off: Floats, cell: Ints, grid: CellGrid) -> Floats:
+    """(teeth, 2) scale about 0 on each flank, not less than the typical flank's."""
+    flank = _flank(cell, grid)
+    result = np.array([scale_about(off[flank == number]) for number in range(2 * grid.gear.teeth)])
+    return np.asarray(np.fmax(result, np.nanmedian(result)).reshape(-1, 2), dtype=np.float64)
 
 
 def _inner(grid: CellGrid) -> Bools:
     """(m,) cells of flanks away from tip and ends."""
-    inner = np.zeros((grid.gear.teeth, 2, grid.rows, grid.flank))
-    inner[..., EDGE_CELLS:-EDGE_CELLS, :-EDGE_CELLS] = 1.0
-    return _on_flanks(inner, grid, 0.0) > 0.5
+    inner = np.zeros(grid.count, dtype=bool)
+    grid.flank_shape(inner)[..., EDGE_CELLS:-EDGE_CELLS, :-EDGE_CELLS] = True
+    return inner
 
 
 def _crowded(number: Floats, below: Floats, above: Floats, grid: CellGrid) -> Bools:
@@ -252,7 +245,8 @@ def _crowded(number: Floats, below: Floats, above: Floats, grid: CellGrid) -> Bo
     squares = [(edge, edge) for edge in WINDOWS if edge < min(grid.rows, grid.flank)]
     sizes = [*squares, (1, grid.flank), (grid.rows, grid.flank)]
     level = PIT_FALSE_ALARM / len(sizes)
-    crowded = np.zeros(number.shape, dtype=bool)
+    result = np.zeros(grid.count, dtype=bool)
+    crowded = grid.flank_shape(result)
     for rows, columns in sizes:
         if columns == grid.flank:  # grooves run along the profile
             way = 3 if rows == 1 else (2, 3)
@@ -270,7 +264,7 @@ def _crowded(number: Floats, below: Floats, above: Floats, grid: CellGrid) -> Bo
         chance = np.where(many > 0, pdtrc(np.maximum(many - 1.0, 0.0), np.maximum(expected, 1e-12)), 1.0)
         centre = (many >= FEWEST_FAR) & (chance < level / max(looks, 1.0))
         crowded |= centre if columns == grid.flank else ndimage.maximum_filter(centre, (1, 1, rows, columns))
-    return _on_flanks(crowded.astype(np.float64), grid, 0.0) > 0.5
+    return result
 
 
 def _with_company(depth: Floats) -> float:

@@ -32,6 +32,8 @@ RING_CELLS = 2
 """Cells round a hole that say what is in it."""
 CROSS = ndimage.generate_binary_structure(2, 1)
 """What is beside a cell."""
+AROUND = np.pad(np.ones((1, 1, 3, 3), dtype=bool), ((1, 1), (1, 1), (0, 0), (0, 0)))
+"""The cells round one on the same side."""
 HOLES_AT_A_TIME = 4096
 """Holes of one form that are filled together."""
 NEAR_EDGE = 2
@@ -314,10 +316,8 @@ def infill(side_maps: SideMaps) -> Floats:
 
 def _span_holes(filled: Floats, side_maps: SideMaps) -> None:
     """Put quadratic surfaces into the holes of `filled` that lie inside a flank or a fillet."""
-    beside = np.zeros((3, 3, 3, 3), dtype=bool)
-    beside[1, 1] = CROSS
     seen = side_maps.seen
-    label, _ = ndimage.label(~seen, beside)
+    label, _ = ndimage.label(~seen, AROUND & CROSS)
     rows, columns = label.shape[2:]
     alike = dict[tuple[int, int, bytes], list[tuple[int, int, int, int]]]()
     for number, place in enumerate(ndimage.find_objects(label), start=1):
@@ -384,9 +384,7 @@ def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0
     score = np.where(known, (centre - local) / stds, 0.0)
     candidates = score > caution * GROWTH_LIMIT_STDS
     core = score > seed
-    structure = np.zeros((3, 3, 3, 3), dtype=bool)
-    structure[1, 1] = True
-    label, _ = ndimage.label(candidates, structure)
+    label, _ = ndimage.label(candidates, AROUND)
     seeded = np.unique(label[core])
     mask = np.isin(label, seeded[seeded > 0])
     return mask, spread, seed * spread
@@ -399,9 +397,7 @@ def own_spread(number: Floats, noise: float, spread: float, white: float) -> Flo
 
 def rim(mask: Bools, cells: int = 1) -> Bools:
     """`mask` and so many cells round it on the same side: where the edge of the wear fades below the limit."""
-    structure = np.zeros((3, 3, 3, 3), dtype=bool)
-    structure[1, 1] = True
-    return np.asarray(ndimage.binary_dilation(mask, structure, iterations=cells))
+    return np.asarray(ndimage.binary_dilation(mask, AROUND, iterations=cells))
 
 
 def between(pits: Bools, fillet: int) -> Bools:

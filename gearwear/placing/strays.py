@@ -72,7 +72,8 @@ class StrayLimits:
         first = np.flatnonzero(np.diff(cells, prepend=-1))
         many = number[cells[first]]
         centre[cells[first]] = 0.5 * (ordered[first + (many - 1) // 2] + ordered[first + many // 2])
-        return cls(centre, _limit(centre, number, grid, clip), lone)
+        reach = clip + apart(np.where(number >= LEAST_CENTRE_POINTS, centre, np.nan), grid)
+        return cls(centre, np.where(number > 0, reach, np.inf), lone)
 
     @classmethod
     def round(cls, cells: Cells, clip: float) -> StrayLimits:
@@ -93,11 +94,6 @@ class StrayLimits:
 def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:
     """(n,) points within reach of their cell's centre, by what they say themselves; parameters as `StrayLimits.of`."""
     return StrayLimits.of(deviation, cell, grid, clip).hold(deviation, cell)
-
-
-def _limit(centre: Floats, number: Ints, grid: CellGrid, clip: float) -> Floats:
-    reach = clip + apart(np.where(number >= LEAST_CENTRE_POINTS, centre, np.nan), grid)
-    return np.where(number > 0, reach, np.inf)
 
 
 def _lone(centre: Floats, number: Ints, grid: CellGrid, clip: float) -> Bools:
@@ -132,33 +128,24 @@ def apart(centre: Floats, grid: CellGrid) -> Floats:
     In the first and last column the wear may go on outside: there twice the step to the next column counts as well.
     """
     sides = grid.sides(centre)
-    sheet = sides.reshape(-1, *sides.shape[2:])
-    unseen = np.isnan(sheet)
-    high = _highest_round(np.where(unseen, -np.inf, sheet))
-    low = -_highest_round(np.where(unseen, -np.inf, -sheet))
-    steep = np.where(high >= low, high - low, 0.0)
+    around = _round(sides)
+    steep = np.nan_to_num(np.fmax.reduce(around) - np.fmin.reduce(around))
     for edge, inner in ((0, 1), (-1, -2)):
-        steep[..., edge] = np.fmax(steep[..., edge], 2.0 * np.abs(sheet[..., edge] - sheet[..., inner]))
+        steep[..., edge] = np.fmax(steep[..., edge], 2.0 * np.abs(sides[..., edge] - sides[..., inner]))
     steep[..., grid.fillet - 1 : grid.fillet + 1] *= STEEPNESS_FACTOR_AT_FORM
     return grid.on_cells(steep)
 
 
 def _mean_round(centre: Floats, grid: CellGrid) -> Floats:
     """(m,) mean of the cells round each cell of a tooth side that were seen; nan where none was, and elsewhere."""
-    sides = grid.sides(centre)
-    rows, columns = sides.shape[2:]
-    wide = np.pad(sides.reshape(-1, rows, columns), ((0, 0), (1, 1), (1, 1)), constant_values=np.nan)
-    around = np.stack([wide[:, i : i + rows, j : j + columns] for i in range(3) for j in range(3) if (i, j) != (1, 1)])
+    around = _round(grid.sides(centre))
     number = np.isfinite(around).sum(axis=0)
-    mean = np.where(number > 0, np.nansum(around, axis=0) / np.maximum(number, 1), np.nan)
-    other = np.full(grid.count, np.nan)
-    on_side = grid.on_cells(np.ones(sides.shape, dtype=bool))
-    return np.where(on_side, grid.on_cells(mean.reshape(sides.shape)), other)
+    number, total = grid.on_cells(number), grid.on_cells(np.nansum(around, axis=0))
+    return np.where(number > 0, total / np.maximum(number, 1), np.nan)
 
 
-def _highest_round(sheets: Floats) -> Floats:
-    """Greatest of the up to eight neighbours along the last two axes; −inf where there is none."""
-    rows, columns = sheets.shape[1:]
-    wide = np.pad(sheets, ((0, 0), (1, 1), (1, 1)), constant_values=-np.inf)
-    around = [wide[:, i : i + rows, j : j + columns] for i in range(3) for j in range(3) if (i, j) != (1, 1)]
-    return np.asarray(np.max(around, axis=0), dtype=np.float64)
+def _round(sides: Floats) -> Floats:
+    """(8, teeth, 2, rows, columns) the neighbours of each cell; nan where there is none."""
+    rows, columns = sides.shape[2:]
+    wide = np.pad(sides, ((0, 0), (0, 0), (1, 1), (1, 1)), constant_values=np.nan)
+    return np.stack([wide[..., i : i + rows, j : j + columns] for i in range(3) for j in range(3) if (i, j) != (1, 1)])
