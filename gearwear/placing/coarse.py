@@ -46,21 +46,23 @@ def take_sample(points: Floats, normals: Floats | None) -> Sample:
     normals : (n, 3) float or None
         Normals of the file, if it has any.
     """
-    from scipy.spatial import cKDTree
-
     rng = np.random.default_rng(0)
     pick = rng.choice(len(points), SAMPLE, replace=False) if len(points) > SAMPLE else np.arange(len(points))
     sample = points[pick]
-    tree = cKDTree(sample)
-    distance, near = tree.query(sample, k=min(11, len(sample)))
-    reach = distance[:, -1]
-    kept = reach < 6.0 * np.median(reach)
+    return among_neighbours(sample, sample, min(11, len(sample)), None if normals is None else normals[pick])
+
+
+def among_neighbours(picked: Floats, points: Floats, number: int, normals: Floats | None = None) -> Sample:
+    """`picked` of the points but for strays, with their own normals or those of the plane through so many neighbours (themselves among them)."""
+    from scipy.spatial import cKDTree
+
+    distance, near = cKDTree(points).query(picked, k=number)
+    kept = distance[:, -1] < 6.0 * np.median(distance[:, -1])
     if normals is not None:
-        return Sample(sample[kept], normals[pick][kept])
-    around = sample[near[kept]]
+        return Sample(picked[kept], normals[kept])
+    around = points[near[kept]]
     around = around - around.mean(axis=1, keepdims=True)
-    _, vectors = np.linalg.eigh(np.einsum("nki,nkj->nij", around, around))
-    return Sample(sample[kept], vectors[:, :, 0])
+    return Sample(picked[kept], np.linalg.eigh(np.einsum("nki,nkj->nij", around, around))[1][:, :, 0])
 
 
 def axis_candidates(sample: Sample) -> list[Floats]:

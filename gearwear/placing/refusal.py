@@ -255,7 +255,7 @@ def _twist(points: SurfacePoints, gear: Gear) -> float:
     n, sz, sd, szz, szd = (np.bincount(flank, w, minlength=2 * gear.teeth) for w in (np.ones(len(flanks)), z, d, z * z, z * d))
     spread = n * szz - sz * sz
     enough = (n >= 20.0) & (spread > (0.05 * n * gear.face_width) ** 2)
-    slope = np.where(enough, n * szd - sz * sd, 0.0) / np.where(enough, spread, 1.0) / (gear.base_radius * gear.base_helix_cosine)
+    slope = np.where(enough, n * szd - sz * sd, 0.0) / np.where(enough, spread, 1.0) / gear.normal_lever
     sides = [slope[part][enough[part]] for part in (slice(gear.teeth), slice(gear.teeth, None))]
     if min(len(side) for side in sides) < 0.5 * gear.teeth:
         return 0.0
@@ -278,9 +278,7 @@ def _metal_between(points: Floats, gear: Gear) -> bool:
     sample, radius, height = sample[ring], radius[ring], height[ring]
     if not len(sample):
         return False
-    pitch = gear.pitch_angle
-    arc = np.abs(np.mod(np.arctan2(sample[:, 1], sample[:, 0]) + 0.5 * pitch, pitch) - 0.5 * pitch) * radius
-    outside = arc - radius * gear.half_angle(radius)
+    outside = _off_middle(sample, radius, gear) - radius * gear.half_angle(radius)
     low, high = np.quantile(height, [0.01, 0.99])
     ends = [np.abs(height - end) < 0.05 * (high - low) for end in (low, high)]
     tooth, space = ([int((end & part).sum()) for end in ends] for part in (outside < -off, outside > off))
@@ -396,9 +394,7 @@ def _width_seen(points: Floats, gear: Gear) -> float:
     low, high = _reach(np.where(upper, height - gap, height)[flank] if gap > 0.0 else height[flank], b - gap)
     high += gap
     # Inside the metal of a tooth, away from its sides, there is nothing but an end face.
-    pitch = 2.0 * np.pi / gear.teeth
-    off = np.abs(np.mod(np.arctan2(sample[:, 1], sample[:, 0]) + 0.5 * pitch, pitch) - 0.5 * pitch) * radius
-    way = gear.orientation
+    off, way = _off_middle(sample, radius, gear), gear.orientation
     tooth = (way * (radius - gear.form_radius) > 0.0) & (way * (radius - gear.tip_radius) < -0.1 * m)
     half = np.zeros(len(sample))
     half[tooth] = radius[tooth] * gear.half_angle(radius[tooth])
@@ -412,6 +408,12 @@ def _width_seen(points: Floats, gear: Gear) -> float:
             f"the teeth of the scan are {'' if both else 'at least '}{width:.4g} mm wide, and the design's face_width is {b:g} mm; check it"
         )
     return b if abs(excess) <= SAME_WIDTH * b + 0.02 * m else round(width, 3)
+
+
+def _off_middle(untwisted: Floats, radius: Floats, gear: Gear) -> Floats:
+    """(n,) arcs from the middle of the tooth at that place, mm."""
+    pitch, angle = gear.pitch_angle, np.arctan2(untwisted[:, 1], untwisted[:, 0])
+    return np.asarray(np.abs(np.mod(angle + 0.5 * pitch, pitch) - 0.5 * pitch) * radius)
 
 
 def _reach(height: Floats, width: float) -> tuple[float, float]:

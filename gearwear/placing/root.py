@@ -7,7 +7,7 @@ the dedendum of a rack that do are looked for, and where none fits the root is f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -120,20 +120,11 @@ def fit_root(located: SurfacePoints, gear: Gear) -> Root:
     zone = _zone(located, gear)
     if len(zone) < LEAST_POINTS:
         return Root(gear, False, True, gear.spec.rack_tip_radius, gear.spec.dedendum, float("nan"), float("nan"))
-    misfit_of_design = _misfit(zone, gear)
-    if gear.spec.internal:  # what else cut it is not searched for
-        fits = gear.root_stated and misfit_of_design <= UNLIKE * gear.transverse_module
-        return Root(
-            gear,
-            True,
-            fits,
-            gear.spec.rack_tip_radius if fits else None,
-            gear.spec.dedendum if fits else None,
-            misfit_of_design,
-            misfit_of_design,
-        )
+    misfit_of_design, m = _misfit(zone, gear), gear.transverse_module
     kept = Root(gear, True, True, gear.spec.rack_tip_radius, gear.spec.dedendum, misfit_of_design, misfit_of_design)
-    m = gear.transverse_module
+    if gear.spec.internal:  # what else cut it is not searched for
+        fits = gear.root_stated and misfit_of_design <= UNLIKE * m
+        return kept if fits else replace(kept, fits_design=False, rack_tip_radius=None, dedendum=None)
     if misfit_of_design <= MISFIT * m:
         return kept
     tried = [(misfit_of_design, gear)]

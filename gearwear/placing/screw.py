@@ -14,7 +14,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
-from gearwear.placing.coarse import SAMPLE, Sample
+from gearwear.placing.coarse import SAMPLE, Sample, among_neighbours
 
 TRIES = 1500
 LIMITS = (0.1, 0.06, 0.06, 0.04, 0.04, 0.04)
@@ -48,16 +48,9 @@ class Screw:
 
 def fine_sample(points: Floats) -> Sample:
     """As `take_sample`, with the normals from the nearest neighbours in the scan itself (at most 300,000 points)."""
-    from scipy.spatial import cKDTree
-
     rng = np.random.default_rng(0)
     points = points[rng.choice(len(points), min(len(points), 300_000), replace=False)]
-    picked = points[:SAMPLE]
-    distance, near = cKDTree(points).query(picked, k=13)
-    kept = distance[:, -1] < 6.0 * np.median(distance[:, -1])
-    around = points[near[kept]]
-    around = around - around.mean(axis=1, keepdims=True)
-    return Sample(picked[kept], np.linalg.eigh(np.einsum("nki,nkj->nij", around, around))[1][:, :, 0])
+    return among_neighbours(points[:SAMPLE], points, 13)
 
 
 def find_screw(sample: Sample) -> Screw | None:
