@@ -77,10 +77,7 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
     lever = np.zeros((flanks, 2))
     scatter = np.full(flanks, np.nan)
     samples = samples.inside(roll, z)
-    order = np.argsort(samples.flank, kind="stable")
-    border = np.searchsorted(samples.flank[order], np.arange(flanks + 1))
-    for flank in range(flanks):
-        mine = order[border[flank] : border[flank + 1]]
+    for flank, mine in enumerate(samples.by_flank()):
         if not len(mine):
             continue
         _, p, h, twisted = next(row for row in DEGREES if len(mine) >= row[0])
@@ -145,8 +142,6 @@ def levelled(samples: FlankSamples, form: AdditiveForm, along: str, band: tuple[
 def levelling_errors(form: AdditiveForm, traces: Traces, scatter: float) -> Floats:
     """What `levelled` adds to the errors of the bins, (teeth, 2, n) mm, all of a flank's together: where its points do not lie round the middle
     of the band, what is left of its slope across. `scatter` is the standard deviation of one point, mm, with what hangs together."""
-    if traces.across is None:
-        raise ValueError("these traces do not know where across them their points lie")
     roll = traces.along == "roll"
     limits, lever = (form.z, form.lever[:, 1]) if roll else (form.roll, form.lever[:, 0])
     off = 2.0 * (0.5 * (traces.band[0] + traces.band[1]) - traces.across) / (limits[1] - limits[0])
@@ -155,8 +150,7 @@ def levelling_errors(form: AdditiveForm, traces: Traces, scatter: float) -> Floa
 
 def is_thin(samples: FlankSamples) -> bool:
     """Fewer than `THIN` points on the usual flank."""
-    count = np.bincount(samples.flank, minlength=2 * samples.gear.teeth)
-    return bool(len(samples)) and float(np.median(count[count > 0])) < THIN
+    return len(samples) > 0 and samples.per_flank < THIN
 
 
 def thin_scatter(samples: FlankSamples, form: AdditiveForm) -> float | None:

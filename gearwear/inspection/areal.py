@@ -105,9 +105,7 @@ class Areal:
         return self.profile_range.length / len(self.roll), self.helix_range.length / len(self.z)
 
 
-def evaluate_areal(
-    samples: FlankSamples, profile: Range, helix: Range, noise: float, hand: float = 1.0, covariance: Floats | None = None
-) -> Areal:
+def evaluate_areal(samples: FlankSamples, profile: Range, helix: Range, noise: float, covariance: Floats | None = None) -> Areal:
     """Evaluate every flank as a surface.
 
     Parameters
@@ -118,8 +116,6 @@ def evaluate_areal(
         L and z of the evaluated area.
     noise : float
         Standard deviation of one point with what hangs together, mm.
-    hand : float
-        Sign of helix slopes: −1 on a gear of left hand, else +1.
     covariance : (6, 6) float or None
         Of the registration (`registered.motion_errors`); None: the pose is taken as known.
 
@@ -129,7 +125,7 @@ def evaluate_areal(
     (of δ and of every term alike), each cell with the same weight: a place that was scanned twice is no larger for that. The parameters are linear in
     the means, so their uncertainty is exact. Lowest and highest are greatest values of noisy numbers: `estimate.of_statistic`.
     """
-    gear, area = samples.gear, ((profile.start, profile.end), (helix.start, helix.end))
+    gear, area = samples.gear, (profile.ends, helix.ends)
     inside = samples.inside(*area)
     shape = _cells(inside)
     cells = _CellMeans.of(inside, profile, helix, shape)
@@ -170,7 +166,7 @@ def evaluate_areal(
             estimate = of_statistic(_most, sign * off[known], errors)
             part.value[flank], part.standard[flank], part.noise[flank] = sign * estimate.value, estimate.standard, estimate.noise
             place[flank] = [r.middle + 0.5 * r.length * columns[at, i] for r, i in ((profile, 1), (helix, 2))]
-    turned = np.stack([np.ones((gear.teeth, 2)), hand * sides, *np.ones((3, gear.teeth, 2))], axis=-1)
+    turned = np.stack([np.ones((gear.teeth, 2)), samples.hand * sides, *np.ones((3, gear.teeth, 2))], axis=-1)
     values = values * turned
     if shared is not None:
         shared = shared * turned[..., None]

@@ -222,9 +222,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
 
     laboratory = None
     if given.laboratory:
-        laboratory = examine(
-            scan.seen, gear, profile, helix, circle, scan.point_noise, scan.sample_factor, given.pose_covariance
-        )  # fmt: skip
+        laboratory = examine(scan.seen, profile, helix, circle, scan.point_noise, scan.sample_factor, given.pose_covariance)
     judge = Judge(Size.of(gear), given.edition, given.required_class, pitch.sector, graded)
     limits = limit_notes(scan.coverage, LEAST_COVERAGE, profile, helix, scan.samples.is_section)
     felt_by = ball_notes(given.stylus_radius)
@@ -243,12 +241,11 @@ def _evaluated(scan: PreparedScan, over_face: Traces) -> tuple[Evaluation, Evalu
     """Profile and helix, of a thin scan once more with what the flanks of a side have in common; that of the profiles."""
     gear, bands = scan.gear, scan.settings.k_bands or KBands()
     profiles, helices = (felt(traces, scan.settings.stylus_radius, gear) for traces in (over_face, scan.helices()))
-    hand = -1.0 if gear.helix_angle < 0.0 else 1.0
 
     def evaluated(in_profiles: CommonForm | None, in_helices: CommonForm | None) -> tuple[Evaluation, Evaluation]:
         return (
             evaluate(profiles, scan.profile, bands=bands.profile, shared=profile_errors, common=in_profiles),
-            evaluate(helices, scan.helix, bands=bands.helix, shared=helix_errors, common=in_helices, hand=hand),
+            evaluate(helices, scan.helix, bands=bands.helix, shared=helix_errors, common=in_helices, hand=scan.samples.hand),
         )
 
     profile_errors, helix_errors = scan.errors(profiles), scan.errors(helices)

@@ -66,7 +66,7 @@ class KBand:
     @classmethod
     def straight(cls, where: Range, tolerance: float) -> KBand:
         """A band as wide as the total tolerance (mm) over the evaluation range."""
-        return cls((where.start, where.end), (-0.5 * tolerance,) * 2, (0.5 * tolerance,) * 2)
+        return cls(where.ends, (-0.5 * tolerance,) * 2, (0.5 * tolerance,) * 2)
 
     @property
     def width(self) -> float:

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 from gearwear.arrays import Floats
-from gearwear.design.gear import Gear
 from gearwear.inspection.areal import Areal, evaluate_areal
 from gearwear.inspection.composite import Composite, evaluate_composite
 from gearwear.inspection.evaluation import Evaluation
@@ -43,7 +42,6 @@ class Laboratory:
 
 def examine(
     samples: FlankSamples,
-    gear: Gear,
     profile: Evaluation,
     helix: Evaluation,
     circle: float,
@@ -57,8 +55,6 @@ def examine(
     ----------
     samples : FlankSamples
         The flanks' points.
-    gear : Gear
-        The nominal gear.
     profile, helix : Evaluation
         Traces of the whole flank.
     circle : float
@@ -77,16 +73,16 @@ def examine(
     """
     if samples.is_section or not len(samples) or not math.isfinite(noise):
         return None
-    where, face = profile.range, helix.range
-    inside = samples.inside((where.start, where.end), (face.start, face.end))
+    gear, where, face = samples.gear, profile.range, helix.range
+    inside = samples.inside(where.ends, face.ends)
     if not len(inside):
         return None
     spacing = math.sqrt(where.length * face.length / inside.per_flank)
-    hand, together = -1.0 if gear.helix_angle < 0.0 else 1.0, noise * math.sqrt(factor)
-    areal = evaluate_areal(samples, where, face, together, hand, covariance)
+    together = noise * math.sqrt(factor)
+    areal = evaluate_areal(samples, where, face, together, covariance)
     return Laboratory(
         spacing,
-        take_sections(samples, where, face, profile_place(gear, circle), noise, factor, hand, covariance),
+        take_sections(samples, where, face, profile_place(gear, circle), noise, factor, covariance),
         areal,
         wave_spectrum(samples, where, face, together),
         evaluate_composite(gear, profile, areal, covariance),

@@ -116,7 +116,7 @@ class PreparedScan:
         if self.form is None:
             return self.seen
         form_place, _ = profile_ends(self.gear)
-        z = (self.helix.start, self.helix.end) if along == "z" else band
+        z = self.helix.ends if along == "z" else band
         return levelled(self.seen.inside((form_place, self.profile.outer), z), self.form, along, band)
 
     def shared_errors(self, traces: Traces) -> Floats | None:
@@ -213,12 +213,12 @@ def prepare(points: SurfacePoints, gear: Gear, settings: Settings) -> PreparedSc
     check_settings(settings, gear)
     samples = flank_samples(points, gear)
     profile, helix, notes = _ranges(samples, settings)
-    face = (helix.start, helix.end)
+    face = helix.ends
     if samples.is_section:
         face = (float(samples.z.min()) - 0.1, float(samples.z.max()) + 0.1)
     profile_band, pitch_band = settings.profile_band or face, settings.pitch_band or face
-    helix_band = profile_places(gear, settings.helix_band) or (profile.start, profile.end)
-    area = ((profile.start, profile.end), (helix.start, helix.end))
+    helix_band = profile_places(gear, settings.helix_band) or profile.ends
+    area = (profile.ends, helix.ends)
     coverage = flank_coverage(samples, area)
     seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
     noise, form, textured = settings.noise, None, seen
@@ -251,14 +251,14 @@ def _ranges(samples: FlankSamples, settings: Settings) -> tuple[Range, Range, li
     start = None if settings.control_roll is None else profile_place(gear, settings.control_roll)
     end = None if settings.profile_end is None else profile_place(gear, settings.profile_end)
     if start is None and not samples.is_section and is_thin(samples):
-        start = seen_from(samples, (helix.start, helix.end))
+        start = seen_from(samples, helix.ends)
         if start is not None:
             notes.append(
                 f"The profile is evaluated from a diameter of {2.0 * math.hypot(gear.base_radius, start):.3f} mm: {'beyond' if gear.spec.internal else 'below'} it most flanks were not seen."
             )
     profile = profile_range(gear, settings.edition, start, end, settings.profile_cutoff, settings.slope_length)
     if settings.helix_between is None and not samples.is_section:
-        whole = seen_face(samples, (start or form_place, tip_place), (helix.start, helix.end))
+        whole = seen_face(samples, (start or form_place, tip_place), helix.ends)
         if whole is not None:
             helix = helix_range(gear, whole, settings.helix_cutoff)
             notes.append(

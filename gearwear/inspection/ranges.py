@@ -55,6 +55,10 @@ class Range:
         return self.end - self.start
 
     @property
+    def ends(self) -> tuple[float, float]:
+        return self.start, self.end
+
+    @property
     def middle(self) -> float:
         return 0.5 * (self.start + self.end)
 

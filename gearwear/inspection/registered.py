@@ -32,8 +32,6 @@ def shared_errors(traces: Traces, gear: Gear, covariance: Floats) -> Floats:
     -----
     ``n · (t + w × p) / cos β_b`` at the bin's own place, in first order, along the transverse base tangent as the traces are.
     """
-    if traces.across is None:
-        raise ValueError("these traces do not know where across them their points lie")
     seen = traces.count > 0
     along, across = (np.where(seen, place, 0.0) for place in (traces.station, traces.across))
     roll, z = (along, across) if traces.along == "roll" else (across, along)

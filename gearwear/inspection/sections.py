@@ -105,7 +105,6 @@ def take_sections(
     circle: float,
     noise: float,
     factor: float = 1.0,
-    hand: float = 1.0,
     covariance: Floats | None = None,
 ) -> Sections:
     """Take the traces.
@@ -122,15 +121,10 @@ def take_sections(
         Standard deviation of one point, mm.
     factor : float
         Points per independent point.
-    hand : float
-        −1 on a gear of left hand, else +1.
     covariance : (6, 6) float or None
         Of the registration; None: the pose is taken as known.
     """
-    usual = np.bincount(
-        samples.inside((profile.start, profile.end), (helix.start, helix.end)).flank, minlength=2 * samples.gear.teeth
-    )
-    density = float(np.median(usual[usual > 0])) / (profile.length * helix.length) if usual.any() else 0.0
+    density = samples.inside(profile.ends, helix.ends).per_flank / (profile.length * helix.length)
 
     def cut(along: str, place: str, at: float) -> LineTraces:
         where, across = (profile, helix) if along == "roll" else (helix, profile)
@@ -142,7 +136,7 @@ def take_sections(
         led, errors = led_to_line(traces, samples, at, where, noise * math.sqrt(factor))
         if covariance is not None:
             errors = np.concatenate([shared_errors(led, samples.gear, covariance), errors], axis=-1)
-        return LineTraces(place, at, half, evaluate(led, where, shared=errors, hand=hand))
+        return LineTraces(place, at, half, evaluate(led, where, shared=errors, hand=samples.hand))
 
     def places(where: Range, middle: float) -> list[float]:
         less = NEAR_END * where.length
@@ -151,7 +145,7 @@ def take_sections(
     return Sections(
         tuple(cut("roll", place, at) for place, at in zip(PLACES, places(helix, helix.middle), strict=True)),
         tuple(cut("z", place, at) for place, at in zip(PLACES, places(profile, circle), strict=True)),
-        hand,
+        samples.hand,
     )
 
 
@@ -181,26 +175,22 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
     ``δ = trace(bin) + (x − at) (b0 + b1 t) + c (x − at)²``, x across the strip and t along it, by least squares with every bin's level free (partitioned
     regression: all is taken about the bins' means).
     """
-    roll = traces.along == "roll"
-    along, across = (samples.roll, samples.z) if roll else (samples.z, samples.roll)
+    along, across = samples.along(traces.along)
     teeth, _, n = traces.deviation.shape
     low = float(traces.centre[0]) - 0.5 * traces.step
     inside = (across >= traces.band[0]) & (across <= traces.band[1]) & (along >= low) & (along <= low + n * traces.step)
     place = np.minimum(((along[inside] - low) / traces.step).astype(np.int64), n - 1)
-    flank, delta = samples.flank[inside], samples.deviation[inside]
-    cell, number = flank * n + place, 2 * teeth * n
+    part = samples.take(inside)
+    cell, number = part.flank * n + place, 2 * teeth * n
     half = 0.5 * (traces.band[1] - traces.band[0])
     x, t = (across[inside] - at) / half, where.from_middle(along[inside])
     columns = np.column_stack([x, x * t, x * x])
     count = np.maximum(np.bincount(cell, minlength=number), 1)
     mean = np.column_stack([np.bincount(cell, column, number) / count for column in columns.T])
-    level = np.bincount(cell, delta, number) / count
-    off, remainder = columns - mean[cell], delta - level[cell]
+    level = np.bincount(cell, part.deviation, number) / count
+    off, remainder = columns - mean[cell], part.deviation - level[cell]
     led, errors = traces.deviation.reshape(-1, n).copy(), np.zeros((2 * teeth, n, LED))
-    order = np.argsort(flank, kind="stable")
-    border = np.searchsorted(flank[order], np.arange(2 * teeth + 1))
-    for index in range(2 * teeth):
-        mine = order[border[index] : border[index + 1]]
+    for index, mine in enumerate(part.by_flank()):
         if len(mine) < 2:
             continue
         inverse = np.linalg.pinv(off[mine].T @ off[mine], rcond=1e-6, hermitian=True)

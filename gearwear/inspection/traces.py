@@ -76,6 +76,11 @@ class FlankSamples:
         return len(self.deviation)
 
     @property
+    def hand(self) -> float:
+        """Sign of helix slopes: −1 on a gear of left hand, so that + is too large a helix angle; else +1."""
+        return -1.0 if self.gear.helix_angle < 0.0 else 1.0
+
+    @property
     def is_section(self) -> bool:
         """All points at one height."""
         return len(self.z) > 0 and float(np.ptp(self.z)) <= 1e-3
@@ -85,6 +90,15 @@ class FlankSamples:
         """Points that the usual flank has, of those that have any; 0 without."""
         count = np.bincount(self.flank)
         return float(np.median(count[count > 0])) if len(self) else 0.0
+
+    def along(self, way: str) -> tuple[Floats, Floats]:
+        """Places along traces of this way ("roll" or "z") and across them, mm."""
+        return (self.roll, self.z) if way == "roll" else (self.z, self.roll)
+
+    def by_flank(self) -> list[Ints]:
+        """Numbers of the points of each flank, (2 · teeth) arrays."""
+        order = np.argsort(self.flank, kind="stable")
+        return np.split(order, np.searchsorted(self.flank[order], np.arange(1, 2 * self.gear.teeth)))
 
     def inside(self, roll: tuple[float, float], z: tuple[float, float]) -> FlankSamples:
         """The points in an area, L to L and z to z, mm."""
@@ -119,7 +133,7 @@ class Traces:
         Mean δ and its standard error in mm; nan in a gap.
     count : (teeth, 2, n) int
         Points in each bin.
-    across : (teeth, 2, n) float or None
+    across : (teeth, 2, n) float
         Mean place of the bin's points across the trace (z of a profile, L of a helix), mm.
     """
 
@@ -131,7 +145,7 @@ class Traces:
     deviation: Floats
     standard_error: Floats
     count: Ints
-    across: Floats | None = None
+    across: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,9 +238,7 @@ def profile_traces(
     Traces
         From the form circle to the end of the involute.
     """
-    gear = samples.gear
-    limits = profile_ends(gear)
-    return _traces(samples, "roll", samples.roll, limits, samples.z, band, step, noise, sample_factor)
+    return _traces(samples, "roll", band, step, noise, sample_factor)
 
 
 def helix_traces(
@@ -237,8 +249,7 @@ def helix_traces(
     sample_factor: float = 1.0,
 ) -> Traces:
     """Deviation along z, averaged over a band of roll length; parameters as for `profile_traces`, band from L to L in mm."""
-    limits = (0.0, samples.gear.face_width)
-    return _traces(samples, "z", samples.z, limits, samples.roll, band, step, noise, sample_factor)
+    return _traces(samples, "z", band, step, noise, sample_factor)
 
 
 def topography(
@@ -313,11 +324,7 @@ def seen_face(samples: FlankSamples, roll: tuple[float, float], z: tuple[float, 
     gear, pieces = samples.gear, SLICES
     if not len(part):
         return None
-    order = np.argsort(part.flank, kind="stable")
-    border = np.searchsorted(part.flank[order], np.arange(2 * gear.teeth + 1))
-    middle = np.zeros(2 * gear.teeth)
-    for flank in np.flatnonzero(np.diff(border)):
-        middle[flank] = np.median(part.deviation[order[border[flank] : border[flank + 1]]])
+    middle = np.array([np.median(part.deviation[mine]) if len(mine) else 0.0 for mine in part.by_flank()])
     off = part.deviation - middle[part.flank]
     piece = np.minimum((pieces * (part.z - z[0]) / (z[1] - z[0])).astype(np.int64), pieces - 1)
     whole = np.zeros(pieces, dtype=bool)
@@ -398,20 +405,14 @@ def _common_scale(scale: Floats, count: Ints) -> float:
 
 
 def _traces(
-    samples: FlankSamples,
-    along: str,
-    x: Floats,
-    limits: tuple[float, float],
-    across: Floats,
-    band: tuple[float, float],
-    step: float,
-    noise: float | None,
-    sample_factor: float,
+    samples: FlankSamples, along: str, band: tuple[float, float], step: float, noise: float | None, sample_factor: float
 ) -> Traces:
     if not step > 0.0:
         raise ValueError(f"step must be positive, got {step} mm")
     if not sample_factor >= 1.0:
         raise ValueError(f"sample_factor must be at least 1, got {sample_factor}")
+    limits = _whole(samples.gear)[0 if along == "roll" else 1]
+    x, across = samples.along(along)
     n = max(1, round((limits[1] - limits[0]) / step))
     width = (limits[1] - limits[0]) / n
     inside: Bools = (across >= band[0]) & (across <= band[1]) & (x >= limits[0]) & (x <= limits[1])

@@ -121,7 +121,7 @@ def wave_spectrum(samples: FlankSamples, profile: Range, helix: Range, noise: fl
     amplitude, limit = np.full((2, len(orders)), np.nan), np.full(2, np.nan)
     waves: list[tuple[Wave, ...]] = []
     for side in Side:
-        part = samples.inside((profile.start, profile.end), (helix.start, helix.end))
+        part = samples.inside(profile.ends, helix.ends)
         part = part.take(part.flank % 2 == side.index)
         most = max(FEWEST_POINTS, MOST_VALUES // len(orders))
         roll, from_middle = part.roll / gear.transverse_module, np.abs(part.z - 0.5 * gear.face_width) / gear.transverse_module
@@ -148,13 +148,9 @@ class _Flanks:
 
     @classmethod
     def of(cls, points: FlankSamples, profile: Range, helix: Range) -> _Flanks:
-        if len(points):
-            points = points.take(np.argsort(points.flank, kind="stable"))
-        border = np.searchsorted(points.flank, np.arange(2 * points.gear.teeth + 1))
-        enough = np.diff(border) > 2 * SURFACE_TERMS
-        points = points.take(np.repeat(enough, np.diff(border)))
-        border = np.concatenate([[0], np.cumsum(np.diff(border)[enough])])
-        pieces = tuple(slice(a, b) for a, b in pairwise(border))
+        flanks = [mine for mine in points.by_flank() if len(mine) > 2 * SURFACE_TERMS]
+        points = points.take(np.concatenate([points.flank[:0], *flanks]))
+        pieces = tuple(slice(a, b) for a, b in pairwise(np.cumsum([0, *map(len, flanks)])))
         form = surface_terms(profile.from_middle(points.roll), helix.from_middle(points.z))
         return cls(points, pieces, tuple(np.linalg.qr(form[mine])[0] for mine in pieces))
 

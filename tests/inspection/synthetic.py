@@ -39,4 +39,5 @@ def hand_traces(station: Floats, deviation: Floats, error: Floats, along: str = 
         deviation,
         np.broadcast_to(error, shape).copy(),
         np.ones(shape, np.int64),
+        np.zeros(shape),
     )

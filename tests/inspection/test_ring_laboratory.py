@@ -51,11 +51,11 @@ def test_sections_and_surfaces_are_those_put_in():
         return UM * (2.0 * u + np.where(flank % 2 == 0, 1.0, -1.0) * 2.5 * v - 3.0 * u**2 + 15.0 * u * v)
 
     samples = scattered(ring, shape)
-    surface = evaluate_areal(samples, profile, helix, NOISE, -1.0).flanks
+    surface = evaluate_areal(samples, profile, helix, NOISE).flanks
     for name, truth in (("profile_slope", 4.0), ("helix_slope", -5.0), ("profile_crowning", 3.0), ("twist", 60.0)):
         part = surface.named()[name]
         assert (np.abs(part.value - UM * truth) <= 4.5 * part.standard).all(), name
-    found = take_sections(samples, profile, helix, profile.middle, NOISE, hand=-1.0)
+    found = take_sections(samples, profile, helix, profile.middle, NOISE)
     for cut in found.profiles:
         truth = UM * (4.0 + 60.0 * (cut.at - helix.middle) / helix.length)
         assert (np.abs(cut.evaluation.slope.value - truth) <= 4.5 * cut.evaluation.slope.standard).all(), cut.place

@@ -109,7 +109,7 @@ def _mean_flank(axis: Axes, examined: Laboratory, side: Side, scale: ColourScale
         shown,
         origin="lower",
         aspect="auto",
-        extent=(where.start, where.end, face.start, face.end),
+        extent=(*where.ends, *face.ends),
         cmap=colours(),
         vmin=0.0,
         vmax=1.0,

@@ -138,7 +138,7 @@ def _head(
         averaged = f"at {other} = {section.at if roll else abs(section.at):.2f} mm, from points within ± {section.half_width:.2f} mm of it"
     headline(page, name, inspection, top - 9)
     wide = f" (up to {evaluation.cutoff:.2f} where the scan is thin)" if evaluation.cutoff > 1.01 * where.cutoff else ""
-    start, end = map(abs, (where.start, where.end)) if roll else (where.start, where.end)
+    start, end = map(abs, where.ends) if roll else where.ends
     evaluated = f"{'L' if roll else 'z'} {start:.2f} … {end:.2f} mm  (L{letter} = {where.length:.2f} mm)"
     if where.over is not None:
         evaluated += f", slope over {where.over:.3f} mm"
@@ -176,7 +176,7 @@ def _trace(panel: Panel, pens: Pens, side: Side, place: int, tooth: int) -> None
     if evaluation.k is not None and band is not None and math.isfinite(evaluation.k.shift[tooth, side.index]):
         outside = _band(panel, pens, x, scale, band, float(evaluation.k.shift[tooth, side.index]), zero, trace)
         pens.line("outside", x + np.where(outside, shown, np.nan), height)
-    ends = np.array([evaluation.range.start, evaluation.range.end])
+    ends = np.array(evaluation.range.ends)
     line = scale * (evaluation.line_at(ends)[tooth, side.index] - zero)
     if np.abs(line).max() <= half:
         pens.line("line", x + line, panel.y(ends))

@@ -17,7 +17,7 @@ from gearwear.inspection.grading import Finding
 from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.report.records.laboratory import laboratory_record
-from gearwear.report.records.numbers import Json, estimate, per_flank, rolls, rounded
+from gearwear.report.records.numbers import Json, estimate, lengths, per_flank, rolls, rounded
 
 if TYPE_CHECKING:
     from gearwear.inspection.inspection import Inspection
@@ -57,12 +57,12 @@ def as_dict(inspection: Inspection) -> Json:
         "radial": None
         if not inspection.radial
         else {"standard": RADIAL_STANDARD, "findings": [_finding(finding) for finding in inspection.radial]},
-        "profile": _evaluation(inspection.profile, inspection) | {"band_z_mm": _pair(inspection.profile.band)},
+        "profile": _evaluation(inspection.profile, inspection) | {"band_z_mm": lengths(inspection.profile.band)},
         "helix": _evaluation(inspection.helix, inspection) | {"band_roll_mm": rolls(inspection.helix.band)},
         "pitch": {
             "measuring_roll_mm": rounded(pitch.roll, 1, 4),
             "measuring_radius_mm": rounded(math.hypot(gear.base_radius, pitch.roll), 1, 4),
-            "band_z_mm": _pair(settings.pitch_band or inspection.profile.band),
+            "band_z_mm": lengths(settings.pitch_band or inspection.profile.band),
             "sector_pitches": pitch.sector,
             "flanks": per_flank({"index_um": pitch.index, "single_um": pitch.single}),
         },
@@ -135,7 +135,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Json:
         for row, (tooth, side) in zip(flanks, np.ndindex(*angle.value.shape), strict=True):
             row["pressure_angle_deg"] = estimate(angle.at(tooth, side), 180.0 / math.pi, 5)
     return {
-        "range_roll_mm" if roll else "range_z_mm": (rolls if roll else _pair)((where.start, where.end)),
+        "range_roll_mm" if roll else "range_z_mm": (rolls if roll else lengths)(where.ends),
         **({"slope_over_mm": rounded(where.stated, 1, 4)} if roll else {}),
         "cutoff_mm": rounded(where.cutoff, 1, 4),
         "widest_cutoff_mm": rounded(evaluation.cutoff, 1, 4),
@@ -231,7 +231,3 @@ def _chord(nominal: Chord, measured: Estimate) -> Json:
 def _mean(values: Floats) -> float | None:
     seen = values[np.isfinite(values)]
     return rounded(float(seen.mean()), 1e3, 2) if len(seen) else None
-
-
-def _pair(pair: tuple[float, float]) -> list[float | None]:
-    return [rounded(value, 1, 4) for value in pair]

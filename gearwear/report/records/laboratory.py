@@ -13,7 +13,7 @@ from gearwear.inspection.composite import Composite
 from gearwear.inspection.laboratory import Laboratory
 from gearwear.inspection.sections import LineTraces, Sections
 from gearwear.inspection.waviness import Waviness
-from gearwear.report.records.numbers import Json, estimate, per_flank, rolls, rounded
+from gearwear.report.records.numbers import Json, estimate, lengths, per_flank, rolls, rounded
 
 
 def laboratory_record(laboratory: Laboratory, gear: Gear) -> Json:
@@ -56,9 +56,9 @@ def _areal(areal: Areal) -> Json:
             local = estimate(part.at(tooth, side), 1e3, 2)
             row[f"{name}_um"] = None if local is None else local | {"roll_mm": rounded(abs(roll), 1, 3), "z_mm": rounded(z, 1, 3)}
     return {
-        "range_roll_mm": rolls((areal.profile_range.start, areal.profile_range.end)),
-        "range_z_mm": [rounded(areal.helix_range.start, 1, 4), rounded(areal.helix_range.end, 1, 4)],
-        "cell_mm": [rounded(size, 1, 4) for size in areal.cell_size],
+        "range_roll_mm": rolls(areal.profile_range.ends),
+        "range_z_mm": lengths(areal.helix_range.ends),
+        "cell_mm": lengths(areal.cell_size),
         "mean_flank": {
             str(side): {f"{name}_um": estimate(part.at(side.index), 1e3, 2) for name, part in areal.mean.named().items()}
             for side in Side

@@ -59,7 +59,12 @@ def estimate(measured: Estimate, factor: float, digits: int) -> Json | None:
 
 def rolls(places: tuple[float, float]) -> list[float | None]:
     """Roll lengths (mm) of two places along a profile (`inspection.ranges.profile_place`), root side first: on a ring it is the greater."""
-    return [rounded(abs(place), 1, 4) for place in places]
+    return lengths((abs(places[0]), abs(places[1])))
+
+
+def lengths(pair: tuple[float, float]) -> list[float | None]:
+    """Two heights or sizes, mm."""
+    return [rounded(length, 1, 4) for length in pair]
 
 
 def rounded(value: float, factor: float, digits: int) -> float | None:
