@@ -131,14 +131,12 @@ def _root_numbers(curve: RootCurve) -> tuple[int, tuple[float, float, float, flo
     from gearwear.design.kernel import ARC, RACK, SHAPER
 
     if isinstance(curve, RackTip):
-        rack = curve
         return RACK, (
-            rack.reference_radius, rack.tip_radius, rack.centre_depth, rack.centre_offset, rack.stretch, rack.helix_cosine,
+            curve.reference_radius, curve.tip_radius, curve.centre_depth, curve.centre_offset, curve.stretch, curve.helix_cosine,
         )  # fmt: skip
     if isinstance(curve, ShaperTip):
-        tip = curve
         return SHAPER, (
-            tip.centre_distance, tip.pitch_radius, tip.ratio, tip.centre_radius, tip.centre_angle, tip.tip_radius,
+            curve.centre_distance, curve.pitch_radius, curve.ratio, curve.centre_radius, curve.centre_angle, curve.tip_radius,
         )  # fmt: skip
     assert isinstance(curve, FilletArc)
     return ARC, (curve.centre_radius, curve.centre_angle, curve.radius, 0.0, 0.0, 0.0)

@@ -48,9 +48,7 @@ class ToothProfiles:
     @property
     def loss(self) -> Floats:
         """Normal depth r_b cos β_b (ψ_nominal − ψ), mm, + is missing; shape of `half_angle`. Exact on the involute."""
-        return (
-            self.gear.base_radius * self.gear.base_helix_cosine * (self.gear.half_angles(self.radius, self.z) - self.half_angle)
-        )
+        return self.gear.normal_lever * (self.gear.half_angles(self.radius, self.z) - self.half_angle)
 
     def at_heights(self, z: Floats) -> Floats:
         """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""

@@ -1,8 +1,8 @@
-"""Left and right, pinion and gear: one encoding of each."""
+"""Left and right: one encoding."""
 
 from __future__ import annotations
 
-from enum import IntEnum, StrEnum
+from enum import IntEnum
 
 from gearwear.errors import InputError
 
@@ -57,15 +57,3 @@ class Side(IntEnum):
 def sides_of(side: Side | None) -> frozenset[Side]:
     """A side as a set; the empty one for None."""
     return frozenset() if side is None else frozenset({side})
-
-
-class Part(StrEnum):
-    """A gear of a pair; the pinion drives."""
-
-    PINION = "pinion"
-    GEAR = "gear"
-
-    @property
-    def mate(self) -> Part:
-        """The other one."""
-        return Part.GEAR if self is Part.PINION else Part.PINION

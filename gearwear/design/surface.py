@@ -6,7 +6,6 @@ points; the exact plumb line, no triangles, no search) and `flank_points` (from 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
@@ -327,7 +326,7 @@ def _outline(gear: Gear, bands: Bands, table: tuple[Floats, Floats], seen: _InSe
 
 def _tooth_sides(gear: Gear, bands: Bands, table: tuple[Floats, Floats], seen: _InSection, z: Floats) -> tuple[_Outermost, Bools]:
     """Flanks and fillets, and the points below the form circle that lie on no fillet but on the root."""
-    rb, cos_helix, sin_helix = gear.base_radius, gear.base_helix_cosine, math.sin(gear.base_helix_angle)
+    rb, cos_helix, sin_helix = gear.base_radius, gear.base_helix_cosine, gear.base_helix_sine
     reach, side, within, outer, orientation = seen.reach, seen.side, seen.within, seen.outer, gear.orientation
     flank = (orientation * (reach - rb * np.arctan(reach / rb)) + rb * (within - gear.base_half_angle)) * cos_helix
     fillet_within = within
@@ -394,7 +393,7 @@ def _drawn_offset(gear: Gear, side: Floats, reach: Floats, z: Floats, flank: Flo
     Locally a modified flank is the generated one, turned: the foot lies at L = reach − ι δ cos β_b, z + s δ sin β_b with δ = flank − δ₀ cos β_b.
     Rounds of that settle by the slope of δ₀, some hundredths, each.
     """
-    cos_helix, sin_helix = gear.base_helix_cosine, math.sin(gear.base_helix_angle)
+    cos_helix, sin_helix = gear.base_helix_cosine, gear.base_helix_sine
     result = np.zeros_like(flank)
     for which in Side:
         drawn, at = gear.drawn(which), np.flatnonzero(side == which)
@@ -472,7 +471,7 @@ def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -
     position = np.column_stack([gear.base_radius * cos, gear.base_radius * sin, z + zero])
     position[:, :2] += gear.orientation * roll[:, None] * normal[:, :2]
     normal[:, :2] *= gear.base_helix_cosine
-    normal[:, 2] = -s * math.sin(gear.base_helix_angle) * hand_at(gear, z)
+    normal[:, 2] = -s * gear.base_helix_sine * hand_at(gear, z)
     n = len(tau)
     return SurfacePoints(
         np.full(n, FLANK, np.int8),

@@ -171,7 +171,7 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
             f"[{gear.spec.name}] span over {teeth} teeth cannot be measured: on helical teeth its plates need a face width of {at_least(needs(teeth), 2)} mm, there are {as_given(gear.face_width)} mm; the dimension over balls can"
         )
     length = 2.0 * roll / cosine
-    rise = length * math.sin(gear.base_helix_angle)
+    rise = length * gear.base_helix_sine
     drawn = sum(float(gear.drawn(side).offset(roll, height)) for side, height in _plate_heights(gear, rise).items())
     return Span(teeth, length + cosine * drawn, roll, math.hypot(gear.base_radius, roll), rise)
 

@@ -123,7 +123,7 @@ def coarse_poses(sample: Sample, gear: Gear, axes: Sequence[Floats]) -> list[Pos
         Directions its axis may have.
     """
     scored: list[tuple[float, Pose]] = []
-    steepest = MAX_SIDE_COSINE + abs(math.sin(gear.base_helix_angle))
+    steepest = MAX_SIDE_COSINE + abs(gear.base_helix_sine)
     for axis, turn in _upright(axes, gear):
         turned = sample.points @ turn.T
         cosine = np.abs(sample.normals @ axis)

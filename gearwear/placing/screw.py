@@ -93,7 +93,7 @@ def helical_axes(sample: Sample, gear: Gear) -> list[Floats]:
 
     Each is polished on the normals themselves: their cosines with the axis are 0 on lands, ± sin β_b on flanks and ± 1 on ends.
     """
-    lean = abs(math.sin(gear.base_helix_angle))
+    lean = abs(gear.base_helix_sine)
     targets = np.array([-1.0, -lean, 0.0, lean, 1.0])
     normals, about = sample.normals, sample.points - sample.points.mean(axis=0)
     screw = find_screw(sample)

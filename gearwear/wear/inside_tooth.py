@@ -44,7 +44,7 @@ def _below_flank(gear: Gear, half: Floats, within: Floats) -> Floats:
 
     Normal to an involute is r_b of arc, in space cos β_b of it; the fillet is taken alike.
     """
-    return np.asarray(gear.base_radius * gear.base_helix_cosine * (half - np.abs(within)), dtype=np.float64)
+    return np.asarray(gear.normal_lever * (half - np.abs(within)), dtype=np.float64)
 
 
 def _below_ends(points: Floats, radius: Floats, gear: Gear) -> Floats:

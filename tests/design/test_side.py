@@ -5,7 +5,7 @@ import pytest
 
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import nominal_profiles
-from gearwear.design.side import Part, Side
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import flank_points
 from gearwear.errors import InputError
@@ -46,7 +46,3 @@ def test_only_the_flank_that_carries_lags_by_its_loss(contact, worn, drives):
     found = contact(own, nominal_profiles(WHEEL), 114.3, drives)
     assert np.allclose(found.transmission_error, -0.1 if worn is drives else 0.0, atol=2e-5)
     assert np.allclose(found.backlash, 0.1, atol=2e-5)
-
-
-def test_the_mate_of_the_mate():
-    assert Part.PINION.mate is Part.GEAR and Part.GEAR.mate.mate is Part.GEAR

@@ -8,59 +8,17 @@ stock it leaves; end chamfers; the stage's centre distance. Not read: tolerances
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree
 
-from gearwear.design.files.rexs_flanks import flank_keys, tool_keys
+from gearwear.design.files.rexs_flanks import Model, flank_keys, tool_keys
 from gearwear.design.ring import SHIFT_BY_ISO
 from gearwear.errors import InputError
 
-UNITS = {
-    "mm": 1.0, "m": 1000.0, "mum": 1e-3, "deg": 1.0, "°": 1.0, "rad": math.degrees(1.0), "none": 1.0, "": 1.0,
-}  # fmt: skip
 TIP_RADIUS_FACTORS = ("tip_corner_radius_factor_reference_profile", "tip_radius_factor")
 """Names of the rack's tip radius in modules: of version 2.0, and of those before."""
 LEAST_TIP = 0.5
 """A tip diameter below this share of the reference diameter is a placeholder and is not taken."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Model:
-    """Components by their id with their attributes, and the relations by type: the ids by role."""
-
-    kinds: dict[str, str]
-    names: dict[str, str]
-    attributes: dict[str, dict[str, tuple[str, str]]]
-    relations: list[tuple[str, dict[str, str]]]
-
-    def number(self, component: str, name: str) -> float | None:
-        """A scalar in mm or degrees; None where it is not there."""
-        if name not in self.attributes.get(component, {}):
-            return None
-        text, unit = self.attributes[component][name]
-        where = f"{self.said(component)}: {name} = {text[:40]}"
-        if unit not in UNITS:
-            raise InputError(f"{where} {unit}: one of {', '.join(known for known in UNITS if known)} would be right")
-        try:
-            value = float(text) * UNITS[unit]
-        except ValueError:
-            raise InputError(f"{where}: must be a number") from None
-        if not math.isfinite(value):
-            raise InputError(f"{where}: must be a finite number")
-        return value
-
-    def said(self, component: str) -> str:
-        """Component and name, for a message."""
-        return f"component {component} ({self.names.get(component, 'not there')})"
-
-    def word(self, component: str, name: str) -> str:
-        """A word; "" where it is not there."""
-        return self.attributes.get(component, {}).get(name, ("", ""))[0]
-
-    def partners(self, relation: str, role: str, component: str) -> list[dict[str, str]]:
-        """Ids by role of the relations of a type in which a component has a role."""
-        return [ids for kind, ids in self.relations if kind == relation and ids.get(role) == component]
 
 
 def parse_rexs(data: bytes) -> dict[str, Any]:
@@ -113,7 +71,7 @@ def parse_rexs(data: bytes) -> dict[str, Any]:
     return design
 
 
-def _model(root: ElementTree.Element) -> _Model:
+def _model(root: ElementTree.Element) -> Model:
     kinds, names = {}, {}
     attributes: dict[str, dict[str, tuple[str, str]]] = {}
     for component in root.iterfind("{*}components/{*}component"):
@@ -127,10 +85,10 @@ def _model(root: ElementTree.Element) -> _Model:
         (relation.get("type", ""), {ref.get("role", ""): ref.get("id", "") for ref in relation.iterfind("{*}ref")})
         for relation in root.iterfind("{*}relations/{*}relation")
     ]
-    return _Model(kinds, names, attributes, relations)
+    return Model(kinds, names, attributes, relations)
 
 
-def _member(model: _Model, ident: str) -> dict[str, Any]:
+def _member(model: Model, ident: str) -> dict[str, Any]:
     """The table of a gear or ring. A ring's number of teeth is positive (schema: above 0); of the sign of its profile shift the schema says nothing."""
     table = _gear(model, ident)
     if model.kinds[ident] == "ring_gear":
@@ -144,7 +102,7 @@ def _member(model: _Model, ident: str) -> dict[str, Any]:
     return table
 
 
-def _gear(model: _Model, ident: str) -> dict[str, Any]:
+def _gear(model: Model, ident: str) -> dict[str, Any]:
     table: dict[str, Any] = {}
     for key, name in (
         ("module", "normal_module"), ("helix_angle", "helix_angle_reference_diameter"), ("face_width", "face_width"),

@@ -1,4 +1,4 @@
-"""What a REXS model says of a flank beyond the involute: modifications, tip chamfer, protuberance of the tool, stock.
+"""A REXS model, and what it says of a flank beyond the involute: modifications, tip chamfer, protuberance of the tool, stock.
 
 The structure is that of the official schema, REXS 1.4 to 1.7 (FVA, github.com/fva-net/rexs-api-java, ``rexs_schema_1.7.xml``): a relation
 ``reference`` leads from a ``cylindrical_gear_flank`` to each of its modifications, a ``manufacturing_step`` to tool and settings. What the
@@ -9,10 +9,14 @@ circle and form circle.
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Any
 
 from gearwear.errors import InputError
 
+UNITS = {
+    "mm": 1.0, "m": 1000.0, "mum": 1e-3, "deg": 1.0, "°": 1.0, "rad": math.degrees(1.0), "none": 1.0, "": 1.0,
+}  # fmt: skip
 RELIEFS = {"tip_relief": "tip", "root_relief": "root"}
 ENDS = {"end_relief_datum_face": "datum_face", "end_relief_non_datum_face": "non_datum_face"}
 CROWNINGS = {
@@ -27,24 +31,42 @@ SAME = 1e-6
 """mm within which two statements are one."""
 
 
-class Model(Protocol):
-    """A REXS model, as far as it is asked here."""
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A REXS model: components by their id with their attributes, and the relations by type: the ids by role."""
 
-    @property
-    def kinds(self) -> dict[str, str]:
-        """Type of each component."""
-
-    def said(self, component: str) -> str:
-        """Component and name, for a message."""
+    kinds: dict[str, str]
+    names: dict[str, str]
+    attributes: dict[str, dict[str, tuple[str, str]]]
+    relations: list[tuple[str, dict[str, str]]]
 
     def number(self, component: str, name: str) -> float | None:
         """A scalar in mm or degrees; None where it is not there."""
+        if name not in self.attributes.get(component, {}):
+            return None
+        text, unit = self.attributes[component][name]
+        where = f"{self.said(component)}: {name} = {text[:40]}"
+        if unit not in UNITS:
+            raise InputError(f"{where} {unit}: one of {', '.join(known for known in UNITS if known)} would be right")
+        try:
+            value = float(text) * UNITS[unit]
+        except ValueError:
+            raise InputError(f"{where}: must be a number") from None
+        if not math.isfinite(value):
+            raise InputError(f"{where}: must be a finite number")
+        return value
+
+    def said(self, component: str) -> str:
+        """Component and name, for a message."""
+        return f"component {component} ({self.names.get(component, 'not there')})"
 
     def word(self, component: str, name: str) -> str:
         """A word; "" where it is not there."""
+        return self.attributes.get(component, {}).get(name, ("", ""))[0]
 
     def partners(self, relation: str, role: str, component: str) -> list[dict[str, str]]:
         """Ids by role of the relations of a type in which a component has a role."""
+        return [ids for kind, ids in self.relations if kind == relation and ids.get(role) == component]
 
 
 def flank_keys(model: Model, flank: str, tip_diameter: float | None) -> dict[str, Any]:
@@ -181,6 +203,6 @@ def tool_keys(model: Model, tools: list[str], settings: list[str], module: float
     if stock > 0.0:
         keys["grinding_stock"] = stock
     angle = model.number(tools[0], "protuberance_angle")
-    if angle is not None and math.isfinite(angle):
+    if angle is not None:
         keys["protuberance_angle"] = angle
     return keys

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from gearwear.design.files.sections import PAIR_KEYS
 from gearwear.design.files.values import RATIOS
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS
@@ -46,7 +47,6 @@ LENGTHS = (
 )  # fmt: skip
 ANGLES = ("pressure_angle", "helix_angle", "protuberance_angle")
 COUNTS = ("teeth", "cutter_teeth")
-PAIR = ("centre_distance", "backlash_allowance", "baseline")
 PARTS = ("pinion", "gear", "pair")
 _REMARK = re.compile(r'\s*"?\s*#')
 """How a line that is skipped begins; a spreadsheet puts quotes round one with a separator in it."""
@@ -155,7 +155,7 @@ def _key(text: str, line: int) -> tuple[str, str]:
     else:
         section = ""
     name = ALIASES.get(name, name)
-    return section or ("pair" if name in PAIR else "gear"), name
+    return section or ("pair" if name in PAIR_KEYS else "gear"), name
 
 
 def _value(name: str, value: str, unit: str, separator: str, line: int) -> int | float | str | bool:
