@@ -214,8 +214,7 @@ def _of_width(
     number = np.maximum(_sums(seen.astype(np.float64), width), 1.0)
     mean = np.where(seen, _sums(np.where(seen, curves, 0.0), width) / number, np.nan)
     variance = _sums(np.where(seen, std, 0.0) ** 2, width) / number**2
-    index = np.arange(width)
-    variance += texture * float(np.mean(step ** np.abs(index[:, None] - index)))
+    variance += texture * float(np.mean(correlation(step, width)))
     apart = np.broadcast_to(_at_places(curves.shape[1], width), curves.shape)
     truths = unmixed(mean.ravel(), np.sqrt(np.where(seen, variance, np.nan)).ravel(), apart.ravel())
     known, least = seen.any(axis=1), np.where(seen, mean, np.inf)
@@ -271,8 +270,13 @@ def _correlated(shape: tuple[int, int], steps: tuple[float, float], window: tupl
 
 def _root(step: float, number: int) -> Floats:
     """Triangle whose products with white noise are correlated by `step` from one place to the next."""
+    return np.asarray(np.linalg.cholesky(correlation(step, number) + 1e-9 * np.eye(number)), dtype=np.float64)
+
+
+def correlation(step: float, number: int) -> Floats:
+    """(n, n) of places in a row, `step` from one to the next."""
     index = np.arange(number)
-    return np.asarray(np.linalg.cholesky(step ** np.abs(index[:, None] - index) + 1e-9 * np.eye(number)), dtype=np.float64)
+    return np.asarray(step ** np.abs(index[:, None] - index), dtype=np.float64)
 
 
 def _over_windows(values: Floats, window: tuple[int, int]) -> Floats:
@@ -312,8 +316,7 @@ def least_mean(
         where = np.logical_or(where[1:], where[:-1])
     size = window[0] * window[1]
     white = _over_windows(std**2, window) / size
-    index = [np.arange(n) for n in window]
-    common = texture * float(np.prod([np.mean(s ** np.abs(i[:, None] - i)) for s, i in zip(steps, index, strict=True)]))
+    common = texture * float(np.prod([np.mean(correlation(step, number)) for step, number in zip(steps, window, strict=True)]))
     known = np.where(where, np.sqrt(white + common), np.nan)
     apart = np.outer(*(_at_places(count, width) for count, width in zip(mean.shape, window, strict=True)))
     truths = unmixed(mean[where], known[where], apart[where])

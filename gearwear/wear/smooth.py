@@ -22,6 +22,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.placing.cells import CellGrid
 from gearwear.placing.side_maps import infill
+from gearwear.wear.least import correlation
 from gearwear.wear.regions import Wear
 
 DECADES = np.arange(-4.0, 9.0)
@@ -68,7 +69,7 @@ class _Modes:
         noise = np.full((rows, len(place)), white)
         if covariance is not None and covariance.texture > 0.0:
             steps = ((along, covariance.row_step), (across, covariance.column_step))
-            shares = [np.einsum("ij,ik,kj->j", vectors, _exponential(step, len(vectors)), vectors) for vectors, step in steps]
+            shares = [np.einsum("ij,ik,kj->j", vectors, correlation(step, len(vectors)), vectors) for vectors, step in steps]
             noise = noise + covariance.texture * np.outer(*shares)
         return cls(along, across, (a, b), noise)
 
@@ -205,11 +206,6 @@ def second_differences(place: Floats) -> Floats:
         both = step[i] + step[i + 1]
         result[i, i : i + 3] = 2.0 * step[i + 1] / both, -2.0, 2.0 * step[i] / both
     return result
-
-
-def _exponential(step: float, count: int) -> Floats:
-    index = np.arange(count)
-    return np.asarray(step ** np.abs(index[:, None] - index), dtype=np.float64)
 
 
 def _eigen(place: Floats) -> tuple[Floats, Floats]:
