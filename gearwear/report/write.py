@@ -133,13 +133,13 @@ def report_arrays(results: Results) -> ReportArrays:
         elsewhere=measured.take(lands),
         elsewhere_effects_out=elsewhere_out,
         meshing=None if pair is None else meshing_curves(pair.contact, pair.design),
-        contact_share=None if pair is None else _contact_share(pair, results.part),
+        contact_share=None if pair is None else contact_share(pair, results.part),
         inspection=results.inspection,
         halves=results.halves,
     )
 
 
-def _contact_share(pair: PairResult, part: str) -> Floats:
+def contact_share(pair: PairResult, part: str) -> Floats:
     """Contact pattern of the scanned gear on its carrying side, from the form circle to the tip; nan on the other side."""
     pattern = pair.contact.driver_pattern if part == "pinion" else pair.contact.driven_pattern
     gear = pair.contact.driver if part == "pinion" else pair.contact.driven

@@ -14,7 +14,7 @@ from gearwear.design import Gear, GearSpec
 from gearwear.errors import InputError
 from gearwear.inspection import Settings, inspect
 from gearwear.inspection.stylus import check_ball, closed, felt
-from gearwear.report.records.inspection import _evaluation
+from gearwear.report.records.inspection import as_dict
 from tests.inspection.synthetic import displaced, flanks, hand_traces
 
 X = np.linspace(-2.0, 2.0, 2001)
@@ -97,9 +97,7 @@ def test_an_inspection_with_a_ball_sees_less_of_a_narrow_scratch():
     np.testing.assert_array_equal(plain.pitch.index.value, ball.pitch.index.value)
     np.testing.assert_allclose(ball.helix.slope.value, plain.helix.slope.value, atol=5e-4)
     assert any("stylus ball of 3 mm" in note for note in ball.notes)
-    assert (
-        _evaluation(ball.profile, ball)["stylus_radius_mm"] == 3.0 and _evaluation(plain.helix, plain)["stylus_radius_mm"] is None
-    )
+    assert as_dict(ball)["profile"]["stylus_radius_mm"] == 3.0 and as_dict(plain)["helix"]["stylus_radius_mm"] is None
 
 
 @pytest.mark.parametrize("internal", [False, True])

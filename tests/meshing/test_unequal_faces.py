@@ -19,7 +19,7 @@ from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.linear import linear_contact
 from gearwear.meshing.slices import FaceParts, common_face, facing_mate
 from gearwear.placing.cells import CellGrid
-from gearwear.report.write import _contact_share
+from gearwear.report.write import contact_share
 
 LOSS = 0.05
 EXACT = 2e-7
@@ -196,7 +196,7 @@ def test_heights_are_those_of_the_measured_gear():
 def test_the_picture_of_the_contact_is_empty_on_the_overhang(part):
     design = wide(part, 28.0)
     contact = gw.study_meshing(design, where_they_meet(design.gears[part])).contact
-    share = _contact_share(SimpleNamespace(contact=contact, drive_side=gw.Side.LEFT), part)[:, 0]
+    share = contact_share(SimpleNamespace(contact=contact, drive_side=gw.Side.LEFT), part)[:, 0]
     rows = share.shape[1]
     touched = share.max(axis=(0, 2)) > 0.0
     even = 28.0 * ((np.arange(rows) + 0.5) / rows - 0.5)

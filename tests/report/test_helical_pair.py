@@ -14,7 +14,7 @@ from gearwear.design.side import Side
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.report.figures.arrays import meshing_curves
-from gearwear.report.write import _contact_share
+from gearwear.report.write import contact_share
 
 BETA = math.radians(20.0)
 
@@ -40,9 +40,9 @@ def test_the_curve_of_a_perfect_pair_is_the_design_s(pair):
 
 
 def test_the_pattern_ends_where_the_mate_does(pair):
-    share = _contact_share(pair, "pinion")[:, 0]
+    share = contact_share(pair, "pinion")[:, 0]
     height = 20.0 * ((np.arange(share.shape[1]) + 0.5) / share.shape[1] - 0.5)
     touched = share.max(axis=(0, 2)) > 0.5
     np.testing.assert_array_equal(touched, np.abs(height) <= 5.0)
-    assert (_contact_share(pair, "gear")[:, 0].max(axis=(0, 2)) > 0.5).all()
-    assert np.isnan(_contact_share(pair, "gear")[:, 1]).all()
+    assert (contact_share(pair, "gear")[:, 0].max(axis=(0, 2)) > 0.5).all()
+    assert np.isnan(contact_share(pair, "gear")[:, 1]).all()
