@@ -134,7 +134,7 @@ def test_the_scan_before_wear_knows_of_its_scale_what_was_stated(monkeypatch):
 
     monkeypatch.setattr(before, "register", registered)
     monkeypatch.setattr(before, "read_scan", lambda *_: ())
-    worn = SimpleNamespace(design=after, part="gear", cells=SimpleNamespace(grid=None))
+    worn = SimpleNamespace(design=after, part="gear", scans=(), cells=SimpleNamespace(grid=None))
     with pytest.raises(InputError, match="far enough"):
         before.unworn_gear(stated, worn, ["before.ply"], "mm", True)
     assert taken[0].scanner == stated.scanner
