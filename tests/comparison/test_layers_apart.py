@@ -1,6 +1,7 @@
 """What is missing on teeth on which two views of one file lie apart may be that: the volume is a range, and the verdict says so."""
 
 import numpy as np
+import pytest
 
 from gearwear.api import as_scan
 from gearwear.comparison.closing import find_effects
@@ -49,6 +50,7 @@ def test_views_that_fit_are_not_doubted():
     assert OpenVolume(measured, wear, ()).layered == 0.0
 
 
+@pytest.mark.long
 def test_all_that_is_named_of_a_perfect_gear_may_be_the_views():
     """A view of a third of the gear, its borders blended, out of place by 27 µm and nothing else: no effect stands without a view beside it."""
     scan = make_scan(Recipe(jitter=1.0, noise_um=4.0, pose="none").of_size(30_000), 3)
