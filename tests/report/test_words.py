@@ -24,7 +24,7 @@ from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
-from gearwear.report.words.numbers import quantity, which_flanks
+from gearwear.report.words.numbers import effect_title, quantity, which_flanks
 from gearwear.report.words.verdict import (
     alike_words,
     deepest_range,
@@ -284,7 +284,13 @@ def test_what_is_unexplained_is_said_so_and_never_named():
 
 
 def test_the_loop_tells_what_it_cannot_tell_apart():
-    assert "cannot tell scale from axis offset radial" in loop_words(fake_results())
+    known = fake_results()
+    assert "cannot tell scale from axis offset radial" in loop_words(known)
+    # What is not told from the same is one sentence.
+    alike = tuple(replace(effect, alternatives=("sliding_wear",)) for effect in known.loop.effects[:2])
+    text = loop_words(changed(known, "measured.loop", replace(known.loop, effects=alike)))
+    first, other = (effect_title(effect.name) for effect in alike)
+    assert f"The data cannot tell {first} or {other} from sliding wear." in text and text.count("cannot tell") == 1
 
 
 @pytest.mark.parametrize(("value", "known"), [(-0.97, "sum"), (0.97, "difference"), (0.6, None)])

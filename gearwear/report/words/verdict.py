@@ -170,10 +170,9 @@ def loop_words(results: Results) -> str:
     said = []
     if effects:
         said.append(f"besides wear the scan shows {listed(found_words(effect) for effect in effects)}")
-        for effect in effects:
-            if effect.alternatives:
-                others = listed((effect_title(name) for name in effect.alternatives), "or")
-                said.append(f"the data cannot tell {effect_title(effect.name)} from {others}")
+        for others in dict.fromkeys(effect.alternatives for effect in effects if effect.alternatives):
+            alike = listed((effect_title(effect.name) for effect in effects if effect.alternatives == others), "or")
+            said.append(f"the data cannot tell {alike} from {listed(map(effect_title, others), 'or')}")
         said += alike_words(results)
         text = f"taking {'it' if len(effects) == 1 else 'them'} out brings the RMS outside wear from {_um(loop.rms_before)} to {_um(loop.rms_after)}{SPACE}µm"
         if math.isfinite(loop.held_out_before) and math.isfinite(loop.held_out_after):
