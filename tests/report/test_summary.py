@@ -20,7 +20,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report.words.terminal import ASCII, lines, print_summary, written
-from gearwear.report.words.verdict import doubts, key_figures, subject, verdict
+from gearwear.report.words.verdict import doubts, key_figures, loop_words, subject, verdict
 from gearwear.wear.breakage import Broken
 from tests.report.fake import bare_results, changed, fake_results, real_results
 
@@ -78,6 +78,16 @@ def test_what_was_found_besides_wear_ends_with_its_sentence(width):
     found = said[said.index("Unexplained") : said.index("If left in")].strip().replace("\u00a0", " ")
     assert found.endswith(".") and "…" not in found
     assert "besides wear: a coat 20.10 ± 0.20 µm" in found.lower()
+
+
+def test_of_a_gear_without_wear_nothing_is_besides_wear():
+    unworn = changed(changed(fake_results(), "wear.found.regions", ()), "wear.found.volume", 0.0)
+    said = " ".join(line for line, _ in lines(unworn, 80)).replace("\u00a0", " ")
+    assert "The scan shows: a coat 20.10 ± 0.20 µm" in said
+    none = " ".join(line for line, _ in lines(changed(unworn, "measured.loop.effects", ()), 80))
+    assert "No effect stands out." in none
+    for text in (said, none, loop_words(unworn)):
+        assert "besides wear" not in text.lower()
 
 
 def test_effects_that_have_no_room_for_their_numbers_are_named_all_the_same():

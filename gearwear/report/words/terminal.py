@@ -134,7 +134,8 @@ def _found(results: Results, where: bool, correlated: bool, most: int, named: bo
     loop, effects = results.loop, results.effects
     if loop is None:
         return "No effect of measurement or manufacture was looked for."
-    text = f"Besides wear no {'known ' if loop.patterns else ''}effect stands out."
+    worn = bool(results.wear.regions)
+    text = sentence(f"{'besides wear ' if worn else ''}no {'known ' if loop.patterns else ''}effect stands out")
     if effects:
         said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:most]]
         rest = effects[most:]
@@ -143,7 +144,7 @@ def _found(results: Results, where: bool, correlated: bool, most: int, named: bo
             if named or not rest
             else [f"{len(rest)} more"]
         )
-        text = sentence(f"besides wear: {listed([*said, *more])}")
+        text = sentence(f"{'besides wear' if worn else 'the scan shows'}: {listed([*said, *more])}")
         text = " ".join([text, *(map(sentence, alike_words(results)) if correlated else ())])
     return f"{sentence(unexplained_words(loop, results.gear, where))} {text}" if loop.patterns else text
 

@@ -167,9 +167,9 @@ def loop_words(results: Results) -> str:
     loop, effects = results.loop, results.effects
     if loop is None:
         return "No effect of measurement or manufacture was looked for: whatever differs from the design counts as it stands."
-    said = []
+    said, beside = [], "besides wear " if results.wear.regions else ""
     if effects:
-        said.append(f"besides wear the scan shows {listed(found_words(effect) for effect in effects)}")
+        said.append(f"{beside}the scan shows {listed(found_words(effect) for effect in effects)}")
         for others in dict.fromkeys(effect.alternatives for effect in effects if effect.alternatives):
             alike = listed((effect_title(effect.name) for effect in effects if effect.alternatives == others), "or")
             said.append(f"the data cannot tell {alike} from {listed(map(effect_title, others), 'or')}")
@@ -179,7 +179,7 @@ def loop_words(results: Results) -> str:
             text += f" ({_um(loop.held_out_before)} to {_um(loop.held_out_after)}{SPACE}µm on data the fit never saw)"
         said.append(f"{text}; the scan's own noise is {_um(loop.noise)}{SPACE}µm")
     else:
-        said.append(f"besides wear no {'known ' if loop.patterns else ''}effect of measurement or manufacture stands out")
+        said.append(f"{beside}no {'known ' if loop.patterns else ''}effect of measurement or manufacture stands out")
     return " ".join(map(sentence, [*said, unexplained_words(loop, results.gear)]))
 
 
