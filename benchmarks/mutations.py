@@ -57,8 +57,8 @@ MUTATIONS = [
         ("diagnose/effects/helix_crowning.py", "variance = 0.25 *", "variance = 0.5 *", "diagnose/test_contract.py"),
         ("diagnose/elimination.py", "along_face(fit.cells.grid, pattern) if as_cut else pattern.rms", "pattern.rms", "diagnose/core/test_elimination.py"),
         ("diagnose/elimination.py", "along_face(fit.cells.grid, pattern) if as_cut else pattern.rms", "along_face(fit.cells.grid, pattern)", "diagnose/core/test_elimination.py"),
-        ("diagnose/fit.py", "as_cut = model[index].effect.kind is Kind.MANUFACTURE and", "as_cut = False and", "diagnose/core/test_fit.py"),
-        ("diagnose/fit.py", "model[index].effect.kind is Kind.MANUFACTURE and runs", "runs", "diagnose/core/test_fit.py"),
+        ("diagnose/fit.py", "as_cut = self.is_cut_along_face(model[index], field)", "as_cut = False", "diagnose/core/test_fit.py"),
+        ("diagnose/fit.py", "candidate.effect.kind is Kind.MANUFACTURE and runs", "runs", "diagnose/core/test_fit.py"),
         ("diagnose/as_views.py", "return size < apart or", "return", "diagnose/core/test_as_views.py"),
         ("placing/layers.py", "(own**2 - quiet**2)", "(own**2)", "placing/test_layers.py"),
         # waves that stand in space

@@ -13,7 +13,7 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, judge, with_levels
 from gearwear.diagnose.masks import folds
-from gearwear.diagnose.pattern import Pattern, along_face, find_patterns, joined, order_share, runs_along_face
+from gearwear.diagnose.pattern import Pattern, along_face, find_patterns, joined, order_share
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 
@@ -149,7 +149,7 @@ def _makeshift(
     suspects = []
     for i, part in enumerate(fit.parts(model)):
         field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
-        as_cut = model[i].effect.kind is Kind.MANUFACTURE and runs_along_face(fit.cells.grid, field)
+        as_cut = fit.is_cut_along_face(model[i], field)
         for pattern in patterns:
             left = along_face(fit.cells.grid, pattern) if as_cut else pattern.rms
             small = not kept[i] and evidence[i].contribution < rules().makeshift * left

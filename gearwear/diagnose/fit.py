@@ -219,7 +219,7 @@ class Fit:
         )
         greatest, number = 0.0, len(np.unique(points.tooth[self.use & teeth]))
         asked = beyond_chance(number, 2 * len(halves) * len(model))  # either way
-        as_cut = model[index].effect.kind is Kind.MANUFACTURE and runs_along_face(self.cells.grid, field)
+        as_cut = self.is_cut_along_face(model[index], field)
         split = 0.5 * np.column_stack([np.where(one, 1.0, 0.0) - np.where(other, 1.0, 0.0) for one, other in halves])
         of_sides = flank[:, None] & (points.side[:, None] == np.array([int(side) for side in Side]))
         levels = (split[:, :, None] * of_sides[:, None]).reshape(len(field), -1)
@@ -244,6 +244,10 @@ class Fit:
             if abs(size[-1]) > max(rules().errors * math.sqrt(max(variance, 0.0)), asked * of_units(of_teeth, number)):
                 greatest = max(greatest, abs(float(size[-1])))
         return greatest
+
+    def is_cut_along_face(self, candidate: Candidate, field: Floats) -> bool:
+        """Whether an effect, with its field (m,), is what the maker cut along the face alone: a lead, or a crowning."""
+        return candidate.effect.kind is Kind.MANUFACTURE and runs_along_face(self.cells.grid, field)
 
     def uncertainty(self, model: Model, amplitudes: Floats, context: Context, noise: float) -> list[Floats]:
         """Covariance of each effect's amplitudes and continuous shape values, all of them and the pose fitted together.
