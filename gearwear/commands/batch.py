@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from gearwear.fleet.batch import Crew, Tally, Tell
     from gearwear.fleet.manifest import ManifestRow
     from gearwear.fleet.outcome import Outcome
-    from gearwear.fleet.store import Store
+    from gearwear.fleet.store import Listed, Store
     from gearwear.fleet.task import Job
 
 DESCRIPTION = """\
@@ -80,10 +80,14 @@ def _run(arguments: Namespace) -> None:
     memory, store = arguments.memory * GB, Store(arguments.out)
     with _progress(arguments.quiet, arguments.verbose) as tell:
         tally = run_batch(arguments.fleet, store, _crew(arguments, memory), Options(not arguments.no_loop), memory, tell)
-    if not arguments.quiet:
+    rows = list({row.key: row for row in store.listed_in(arguments.fleet.name)}.values())
+    wrong = _without_result(rows, store)
+    if arguments.quiet:
+        sys.stderr.writelines(f"{text}\n" for text, _ in wrong)
+    else:
         from gearwear.report.words.terminal import print_lines
 
-        print_lines(_summary(tally, store, arguments.fleet))
+        print_lines([*_summary(tally), *wrong, *_further_columns(rows), (f"Written to {store.folder}", "dim")])
 
 
 def _check(arguments: Namespace) -> None:
@@ -157,14 +161,13 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
-def _summary(tally: Tally, store: Store, manifest: Path) -> list[tuple[str, str]]:
-    """The result in some lines."""
-    from gearwear.fleet.manifest import NEEDED, OPTIONAL
-    from gearwear.fleet.outcome import State
+def _summary(tally: Tally) -> list[tuple[str, str]]:
+    """How many scans have a result, and what is odd about the list."""
+    from gearwear.design.quantity import counted
     from gearwear.fleet.words import wrapped
 
     lines = [
-        (f"{tally.total} scans: {tally.done} done, {tally.refused} refused, {tally.failed} failed", "bold"),
+        (f"{counted(tally.total, 'scan')}: {tally.done} done, {tally.refused} refused, {tally.failed} failed", "bold"),
         (f"{tally.ended} of them in this run, the others before" if tally.ended < tally.total else "", ""),
     ]
     if tally.dropped:
@@ -175,15 +178,28 @@ def _summary(tally: Tally, store: Store, manifest: Path) -> list[tuple[str, str]
         lines += wrapped(said, "yellow", 2)
     if len(tally.same) > SHOWN:
         lines.append((f"! and {len(tally.same) - SHOWN} more rows that list the scan of another gear", "yellow"))
-    states = store.states()
-    wrong = [(row, states[row.key]) for row in store.listed() if states.get(row.key) in (State.REFUSED, State.FAILED)]
+    return [line for line in lines if line[0]]
+
+
+def _without_result(rows: Sequence[Listed], store: Store) -> list[tuple[str, str]]:
+    """Why scans of this list were refused or failed; other lists of the store had their own batch."""
+    from gearwear.fleet.outcome import State
+    from gearwear.fleet.words import wrapped
+
+    states, lines = store.states(), list[tuple[str, str]]()
+    wrong = [(row, states[row.key]) for row in rows if states.get(row.key) in (State.REFUSED, State.FAILED)]
     for row, state in wrong[:SHOWN]:
         said = " ".join(filter(None, ("!", row.cells["gear_id"], row.cells.get("inspected", ""), f"{state}:")))
         lines += wrapped(f"{said} {store.why(row.key, state)}", "yellow", 2)
     if len(wrong) > SHOWN:
         lines.append((f"! and {len(wrong) - SHOWN} more: the files *.refused and *.failed in the store say why", "yellow"))
-    known = {*NEEDED, *OPTIONAL, "key"}
-    more_columns = dict.fromkeys(name for row in store.listed_in(manifest.name) for name in row.cells if name not in known)
-    if more_columns:
-        lines += wrapped(f"Further columns, kept as they are: {', '.join(more_columns)}", "dim", 2)
-    return [*(line for line in lines if line[0]), (f"Written to {store.folder}", "dim")]
+    return lines
+
+
+def _further_columns(rows: Sequence[Listed]) -> list[tuple[str, str]]:
+    """Columns that mean nothing to the batch."""
+    from gearwear.fleet.manifest import NEEDED, OPTIONAL
+    from gearwear.fleet.words import wrapped
+
+    names = dict.fromkeys(name for row in rows for name in row.cells if name not in (*NEEDED, *OPTIONAL, "key"))
+    return wrapped(f"Further columns, kept as they are: {', '.join(names)}", "dim", 2) if names else []

@@ -113,8 +113,8 @@ def read_manifest(path: Path) -> list[ManifestRow]:
     Parameters
     ----------
     path : Path
-        CSV with a line of column names; the separator is a comma, a semicolon or a tabulator. Empty lines and lines that begin with # are
-        skipped. Dates and numbers may be as spreadsheets with a decimal comma write them.
+        CSV with a line of column names, whose capitals and blanks do not count; the separator is a comma, a semicolon or a tabulator. Empty
+        lines and lines that begin with # are skipped. Dates and numbers may be as spreadsheets with a decimal comma write them.
 
     Returns
     -------
@@ -132,7 +132,7 @@ def read_manifest(path: Path) -> list[ManifestRow]:
         first, names = next(rows)
     except StopIteration:
         raise InputError(f"{path}: is empty; {NEEDS} is needed") from None
-    names = [name.strip() for name in names]
+    names = [plain if (plain := _plain(name)) in (*NEEDED, *OPTIONAL) else name.strip() for name in names]
     _check_names(path, first, names)
     manifest: list[ManifestRow] = []
     lines_of: dict[tuple[tuple[str, str], ...], int] = {}
@@ -181,10 +181,19 @@ def _records(path: Path, lines: list[str]) -> Iterator[tuple[int, list[str]]]:
         raise InputError(f"{path}: line {begins} is no row of a table ({error}); {NEEDS} is needed") from None
 
 
+def _plain(name: str) -> str:
+    """A column's name without capitals, blanks and hyphens, which nobody means as another column.
+
+    >>> _plain(" Cycles run ")
+    'cycles_run'
+    """
+    return re.sub(r"\W+", "_", name.strip().lower())
+
+
 def _check_names(path: Path, line: int, names: list[str]) -> None:
     for name in NEEDED:
         if name not in names:
-            plain = {re.sub(r"\W+", "_", one.lower()): one for one in names}
+            plain = {_plain(one): one for one in names}
             near = [plain[one] for one in get_close_matches(name, plain, 1)]
             meant = f" ({near[0]!r}?)" if near else ""
             raise InputError(f"{path}: line {line} names no column {name}{meant}; {NEEDS} is needed")

@@ -166,6 +166,7 @@ def gauge_studies(fleet: StoredFleet) -> tuple[list[GaugeStudy], dict[tuple[str,
     """The gauge study of every quantity, and the scans behind each, by quantity and flank.
 
     A part is a gear at the same cycles, whoever scanned it on which day; where these are not known, at one inspection: between two it wears.
+    Left and right are those of its first scan: one that lay the other way up shows them exchanged.
     """
     inspections = {key: one for rows in _by_gear(fleet.rows).values() for key, one in _inspections(rows).items()}
     scans: dict[tuple[str, str], list[Repeat]] = {}
@@ -177,7 +178,8 @@ def gauge_studies(fleet: StoredFleet) -> tuple[list[GaugeStudy], dict[tuple[str,
                 part, number["operator"], number["repeat"], number["value"], std, *beyond(number["value"], std, low, high),
                 found=std > 0.0 or number["value"] != 0.0 or low != 0.0,
             )  # fmt: skip
-            scans.setdefault((number["quantity"], number["flank"]), []).append(repeat)
+            place, scan = (number["quantity"], number["flank"]), fleet.scans.get(number["key"])
+            scans.setdefault(place if scan is None else scan.quantity_in_first(*place), []).append(repeat)
     order = {name: i for i, name in enumerate(QUANTITIES)}
     places = sorted(scans, key=lambda place: (order.get(place[0], len(order)), *place))
     studies = [gauge_study(*place, scans[place]) for place in places]

@@ -16,6 +16,7 @@ from gearwear.fleet.order import Occasion, order_of
 
 Rows = list[Mapping[str, Any]]
 FLANKS = [str(side) for side in Side]
+OTHER_HALF = {"lower": "upper", "upper": "lower"}
 TEETH_COLUMNS: dict[str, type] = {
     "gear_id": str, "inspected": datetime, "cycles_run": float, "operator": str, "repeat": str, "quantity": str, "tooth": int, "flank": str,
     "value": float, "std": float, "low": float, "high": float, "tooth_in_report": int, "flank_in_report": str, "turned_teeth": int,
@@ -55,6 +56,13 @@ class NumberedScan:
     teeth: int
     same: SameTeeth
     place: int = 0
+
+    def quantity_in_first(self, quantity: str, flank: str) -> tuple[str, str]:
+        """A number of the whole gear, with its flank or of a half of a double helical gear, as the first scan's report calls it."""
+        if self.same.flipped:
+            half, of, rest = quantity.partition("_half_")
+            quantity = f"{OTHER_HALF.get(half, half)}{of}{rest}"
+        return quantity, self.in_first(1, flank)[1]
 
     def in_first(self, tooth: int, flank: str) -> tuple[int, str]:
         """A tooth, counted from 1, and a flank ("": none) of this scan's report, as the first scan's report calls them."""

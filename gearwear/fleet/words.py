@@ -209,4 +209,7 @@ def ratio_words(scatter: Scatter | None) -> str:
     """Scatter over what is stated, with its interval."""
     if scatter is None:
         return "–"
-    return f"{scatter.ratio:.2f} ({scatter.low:.2f} to {scatter.high:.2f})"
+    ratio, low, high = (
+        f"{value:.2f}" if value < 9.995 else f"{value:.0f}" for value in (scatter.ratio, scatter.low, scatter.high)
+    )
+    return f"{ratio} ({low} to {high})"

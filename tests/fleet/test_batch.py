@@ -193,7 +193,8 @@ def test_the_command_in_this_process(fleet, tmp_path):
     ]
     assert contents(tmp_path / "store") == contents(store)
     again = command("batch", manifest, "--out", tmp_path / "store", "--workers", "0", "--quiet")
-    assert (again.status, again.out, again.err) == (0, "", "")
+    assert (again.status, again.out) == (0, "")
+    assert again.err.startswith("! G9 2026-01-09 refused: line 4: ")  # an error, and no word of what went well
 
 
 def test_the_end_says_why_in_full_and_what_columns_mean_nothing_to_it(fleet):
@@ -203,6 +204,17 @@ def test_the_end_says_why_in_full_and_what_columns_mean_nothing_to_it(fleet):
     (why,) = (path.read_text(encoding="utf-8").strip() for path in store.glob("*.refused"))
     assert "".join(why.split()) in "".join(said.out.split())
     assert "Further columns, kept as they are: site\n" in said.out
+
+
+def test_what_another_list_of_the_store_refused_is_not_told_of_this_one(tmp_path, monkeypatch):
+    """A tally of "1 scan: 1 done, 0 refused" stood over the refusals of all lists, each "line 2"."""
+    good = "gear_id,design,scans\nG0,design.toml,s0.xyz\n"
+    (sections(tmp_path, 1).parent / "good.csv").write_text(good, encoding="utf-8")
+    monkeypatch.setattr("gearwear.fleet.task.run", lambda job: Outcome(job.key, State.REFUSED, why=f"of {job.row.gear_id}"))
+    command("batch", tmp_path / "fleet.csv", "--out", tmp_path / "store", "--workers", "0")
+    said = command("batch", tmp_path / "good.csv", "--out", tmp_path / "store", "--workers", "0").out
+    assert said.startswith("1 scan: 0 done, 1 refused, 0 failed\n! G0 refused: of G0\n")
+    assert "G9" not in said and "site" not in said
 
 
 def test_a_list_in_the_place_of_another_says_what_it_leaves_out(tmp_path, monkeypatch):

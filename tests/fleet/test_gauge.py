@@ -11,11 +11,12 @@ import pytest
 from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 
+from gearwear.comparison.same_teeth import TeethPattern
 from gearwear.fleet.gauge import Accord, Repeat, gauge_study, in_accord, scatter
 from gearwear.fleet.labels import shown
 from gearwear.fleet.pages import gauge_page
 from gearwear.fleet.reading import gauge_studies, read_fleet
-from gearwear.fleet.words import accord_words, gauge_lines
+from gearwear.fleet.words import accord_words, gauge_line, gauge_lines
 from tests.fleet.fleets import report, row, store_of
 
 
@@ -230,6 +231,47 @@ def test_nothing_found_is_no_zero_of_the_page_nor_of_a_section(tmp_path, size):
     assert hidden == [pytest.approx(2 * 0.02 * 3.0)] * 2
     page = gauge_page([study], scans)
     assert all(shown(study.quantity, mean, 0.05) in page for mean in (1.0, 2.0))
+
+
+def test_a_repeat_that_lay_the_other_way_up_has_its_sides_exchanged(tmp_path):
+    """80 µm left and 20 µm right of both gears, ± 1: where one scan of four lay upside down, its left is their right, of halves with lower
+    and upper exchanged. It read as repeats 60 µm apart that contradict the ±."""
+    rng, given = np.random.default_rng(3), []
+    true = {("single_pitch", "left"): 80.0, ("single_pitch", "right"): 20.0}
+    for part in (1, 2):
+        own = rng.normal(size=(17, 2, 3, 3))
+        for i, over in enumerate((False, True, False, False)):
+            pattern = TeethPattern("form and marks", 3.0 * own + rng.normal(size=own.shape))
+            if over:
+                pattern = TeethPattern(pattern.name, pattern.laid(2, True))
+            other = {"left": "right", "right": "left"}
+            findings = [
+                {
+                    "quantity": name,
+                    "flank": other[side] if over else side,
+                    "value_um": value + 10.0 * part + 0.5 * i,
+                    "expanded_um": 2.0,
+                }
+                for (name, side), value in true.items()
+            ]
+            halves = [("upper" if over else "lower", findings), ("lower" if over else "upper", findings[:1])]
+            one = report() | {"scan": {"teeth_patterns": [{"name": pattern.name, "values": pattern.values.tolist()}]}}
+            one["inspection_halves"] = {half: {"findings": found} for half, found in halves}
+            given.append((row(f"G{part}", None, 1e6, "A", str(i)), one | {"inspection": {"findings": findings}}))
+    _, scans = gauge_studies(read_fleet(store_of(tmp_path / "s", given)))
+    for (name, side), value in true.items():
+        for half in ("", "lower_half_"):
+            found = sorted(scan.value for scan in scans[f"{half}{name}_um", side] if scan.part.startswith("G1"))
+            assert found == [value + 10.0 + 0.5 * i for i in range(4)]
+    assert ("upper_half_single_pitch_um", "right") not in scans
+
+
+def test_a_wide_ratio_keeps_its_line_on_the_terminal(tmp_path):
+    """Intervals of 11.18 (6.70 to 32.14) were cut off at the edge."""
+    given = [replace(one, std=0.001) for one in scans(np.random.default_rng(4), repeats=2, parts=2)]
+    (study,) = in_accord([gauge_study("cumulative_pitch_um", "right", given)])
+    line = gauge_line(study)
+    assert study.repeatability.ratio > 10.0 and len(line) + 2 <= 80 and line.endswith(")")
 
 
 def test_without_date_and_cycles_repeats_are_told_apart_or_none(tmp_path):

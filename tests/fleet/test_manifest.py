@@ -55,6 +55,13 @@ def test_dates_and_numbers_of_a_spreadsheet_with_a_decimal_comma(read):
     ]  # fmt: skip
 
 
+def test_capitals_blanks_and_hyphens_of_a_column_do_not_count(read):
+    """A column "Inspected" was kept as a further column: every date was lost, and the trend had no order."""
+    (row,) = read("Gear ID,Inspected,DESIGN,Scans,Cycles-run, Operator ,Site\nG,2026-03-01,d,s,5,Ann,Hall\n")
+    assert (row.gear_id, row.inspected, row.cycles_run, row.operator) == ("G", datetime(2026, 3, 1), 5.0, "Ann")
+    assert row.more == (("Site", "Hall"),)
+
+
 def test_remarks_with_quotes_and_a_gear_whose_name_begins_with_a_hash(read):
     rows = read('# at 20 C, "cold" room\ngear_id,design,scans\nG1,d,a\n  # "half\nG2,d,b\n"#12",d,c\n#13,d,e\n')
     assert [(row.line, row.gear_id) for row in rows] == [(3, "G1"), (5, "G2"), (6, "#12")]
@@ -74,7 +81,8 @@ HEAD = "gear_id,inspected,design,scans,part,units,cycles_run,repeat\n"
     (HEAD + "G,,d.toml,;,,,,\n", "line 2: scans = ';': at least one file"),
     (HEAD + "G,1/3/2026,d.toml,s.ply,,,,\n", "line 2: inspected = '1/3/2026': a date as 2026-03-01"),
     (HEAD + "G,31.2.2026,d.toml,s.ply,,,,\n", "line 2: inspected = '31.2.2026': a date as 2026-03-01"),
-    ("Gear ID,design,scans\n", "line 1 names no column gear_id ('Gear ID'?)"),
+    ("Gear,design,scans\n", "line 1 names no column gear_id ('Gear'?)"),
+    (HEAD.replace("repeat", "Part"), "line 1 names 'part' 2 times"),
     (HEAD + 'G,,d.toml,s.ply,,,"1,500",\n', "line 2: cycles_run = '1,500': a number from 0 on, such as 2.5e6 or 2500000"),
     (HEAD + "G,,d.toml,s.ply,,,1.500.000,\n", "cycles_run = '1.500.000'"),
     (HEAD + "G,2026-03-01T10:00+01:00,d.toml,s.ply,,,,\n", "local time without a zone"),
@@ -97,7 +105,7 @@ def test_what_is_wrong_is_said_with_its_line(read, text, said):
 
 
 def test_no_table_at_all(tmp_path):
-    for path, said in ((tmp_path, "is a folder"), (tmp_path / "no.csv", "no such file")):
+    for path, said in ((tmp_path, f"^{tmp_path}: is a folder; a table"), (tmp_path / "no.csv", "no such file")):
         with pytest.raises(InputError, match=said):
             read_manifest(path)
     (tmp_path / "scan.ply").write_bytes(b"ply\xff\xfe\x00")

@@ -154,6 +154,8 @@ def read_small(file: Path, needed: str, most: int = MOST_BYTES, usual: str = ", 
             raise InputError(f"{file}: is a folder; {needed} is needed")
         with file.open("rb") as stream:
             data = stream.read(most + 1)
+    except InputError:  # a ValueError too
+        raise
     except FileNotFoundError:
         raise InputError(f"{file}: no such file; {needed} is needed") from None
     except OSError as error:
