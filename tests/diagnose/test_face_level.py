@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
 from gearwear.diagnose.effects.face_level import EFFECT
 from tests.diagnose.sample import Example, context, feet
@@ -27,3 +28,12 @@ def test_flanks_alone_have_it():
 def test_where_no_side_shows_where_its_mate_ran_there_is_none():
     assert EFFECT.applies(context())
     assert not EFFECT.applies(replace(context(), faces=()))
+
+
+def test_open_are_sides_worn_all_over_and_those_that_stand_as_made_at_one_end_alone():
+    """Lead and crowning of a flank are three numbers with its level: one end tells none of them, both tell them in between."""
+    where = context()
+    columns = [len(EFFECT.basis(feet(), replace(where, faces=(face,)), ()).T) for face in where.faces]
+    assert {face.side for face, count in zip(where.faces, columns, strict=True) if count == 1} == where.open_sides == {Side.RIGHT}
+    assert replace(where, worn=frozenset({Side.LEFT})).open_sides == set(Side)
+    assert replace(where, faces=()).open_sides == set()

@@ -8,6 +8,7 @@ import pytest
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, ROOT, TIP, locate
 from gearwear.diagnose.active_face import active_faces
+from gearwear.diagnose.effects.face_level import EFFECT as FACE_LEVEL
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.wear.regions import find_wear
@@ -71,6 +72,10 @@ def test_where_one_end_alone_shows_it_the_stretch_goes_on_to_the_other():
         pytest.param(lambda tooth, side, zeta: -0.012 * (2.0 * zeta) ** 2, id="crowned"),
         pytest.param(lambda tooth, side, zeta: 0.012 * (2.0 * zeta) ** 2, id="hollow"),
         pytest.param(lambda tooth, side, zeta: 0.008 * (2.0 * zeta) ** 4 + 0.010 * zeta, id="hollow at the ends, leaning"),
+        pytest.param(
+            lambda tooth, side, zeta: 0.030 * (2.0 * zeta) ** 2 - low_between(2.6, 12.1, 0.010)(tooth, side, zeta),
+            id="hollow, and proud where a mate would have run",
+        ),
         pytest.param(lambda tooth, side, zeta: -0.015 * np.clip(10.0 * np.abs(zeta) - 4.0, 0.0, None), id="end relief"),
         pytest.param(lambda tooth, side, zeta: -0.015 * (np.abs(zeta) > 0.35), id="ends low"),
         pytest.param(lambda tooth, side, zeta: 0.004 * np.cos(9.0 * zeta + 1.0), id="a wave along the face"),
@@ -101,6 +106,20 @@ def test_cells_beside_it_are_as_made_and_the_others_are_not():
         assert (cells.points.deviation[margin] > -0.1).all()
         z = cells.points.position[margin, 2]
         assert z.min() < 1.0 and z.max() > 14.0
+
+
+@pytest.mark.parametrize("level", [0.0, -0.050], ids=["as drawn", "cut low"])
+def test_how_high_flanks_stand_beside_it_is_told_however_low_they_were_cut(level):
+    """No mate touched them: low, they are not worn; as drawn, they are so within a ± and not by assumption."""
+    low = low_between(2.6, 12.1, 0.030, side=1)
+    cells = cells_with(lambda tooth, side, zeta: low(tooth, side, zeta) + np.where(side > 0, level, 0.0))
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), (FACE_LEVEL,), worn=frozenset({Side.LEFT}))
+    (told,) = (one.parameters["level_um"] for one in loop.form)
+    value, std = np.atleast_1d(told.value), np.atleast_1d(told.std)
+    assert np.abs(value - [1e3 * level, 0.0, 0.0]) == pytest.approx(0.0, abs=4.0 * std.max())
+    assert (std > 0.0).all() and std.max() < 2.0
+    (face,) = loop.context.faces
+    assert loop.use[face.margins(cells)].mean() > 0.9
 
 
 def closed(heights, seed):

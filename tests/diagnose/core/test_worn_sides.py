@@ -268,16 +268,26 @@ AMOUNTS = np.sin(np.arange(12) ** 2)
 
 
 @pytest.mark.parametrize(
-    ("factors", "effects", "uneven"),
+    ("factors", "effects", "other", "uneven"),
     [
-        (1.0 + 0.2 * AMOUNTS, (), True),
-        ((), (Effect("thickness_variation", {"thickness_um": tuple((5.0 * (AMOUNTS - AMOUNTS.mean())).tolist())}),), False),
+        (1.0 + 0.2 * AMOUNTS, (), 0.0, True),
+        (1.0 + 0.2 * AMOUNTS, (), 0.4, False),
+        ((), (Effect("thickness_variation", {"thickness_um": tuple((5.0 * (AMOUNTS - AMOUNTS.mean())).tolist())}),), 0.0, False),
     ],
-    ids=["worn more and less", "thick and thin, and worn alike"],
+    ids=["worn more and less", "the other side as unlike", "thick and thin, and worn alike"],
 )
-def test_an_amount_for_every_tooth_does_not_hide_that_teeth_lost_more_and_less(factors, effects, uneven):
-    """Thickness that varies takes half of that off both flanks of a tooth: beside the shares it is not needed, and what they gain is counted without it."""
+def test_an_amount_for_every_tooth_does_not_hide_that_teeth_lost_more_and_less(factors, effects, other, uneven):
+    """Thickness that varies takes half of that off both flanks of a tooth: beside the shares it is not needed, and what they gain is counted without it.
+
+    Where right flanks, which no wear touched, have the shape of the loss as well, up and down from tooth to tooth by twice as much, left ones may have been
+    cut no more alike.
+    """
     cells = binned((SlidingWear(25.0, 1, tuple(factors), "archard"),), effects)
+    points = cells.points
+    right = cells.seen & (points.surface == FLANK) & (points.side == int(Side.RIGHT))
+    sliding = np.where(right, np.abs(1.0 - PINION.reference_roll / np.where(right, points.roll, 1.0)), 0.0)
+    amounts = other * (-1.0) ** points.tooth
+    cells = cells.with_deviation(points.deviation + 0.025 * amounts * sliding / sliding.max())
     context = make_context(cells, np.eye(3), False)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     dictionary = build_dictionary(cells, (THICKNESS_VARIATION,), context)
