@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from importlib import resources
 from os import PathLike
 from pathlib import Path
@@ -17,7 +17,7 @@ from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
 from gearwear.design.spec import shown
-from gearwear.errors import InputError, NotThisGear
+from gearwear.errors import InputError, NotThisGear, check_kind
 from gearwear.inspection.halves import Half, inspect_half
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.settings import Settings
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 Name = str | PathLike[str]
 """A file."""
+MEASURED = "what gw.register or gw.find_effects returns"
 ONE_FRAME = 0.75
 """Share of the points on the gear, of that of the best view, that a view in the same frame has at least."""
 
@@ -152,6 +153,7 @@ def find_wear(measured: MeasuredGear) -> Wear:
     -------
     Wear
     """
+    check_kind(measured, MeasuredGear, "measured", MEASURED)
     return find_in_cells(measured.as_made, measured.noise, measured.worn_sides, measured.loop, gone=measured.gone)
 
 
@@ -178,6 +180,7 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
     """
     if half is not None and half not in tuple(Half):
         raise InputError(f"half = {shown(half)}: lower or upper would be right, of a double helical gear")
+    check_kind(measured, MeasuredGear, "measured", MEASURED)
     which = Half(half or Half.LOWER) if half is not None or measured.gear.spec.gap > 0.0 else None
     flanks, chosen = filled_in(measured, settings or Settings(laboratory=True))
     return inspect_half(flanks, measured.gear, which, chosen)
@@ -185,9 +188,9 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
 
 def compare(
     design: Design | Name,
-    scans: Name | Sequence[Name],
+    scans: Name | Scan | Sequence[Name | Scan],
     part: str | None = None,
-    before: Name | Sequence[Name] = (),
+    before: Name | Scan | Sequence[Name | Scan] = (),
     units: str = "mm",
     loop: bool = True,
     inspection: bool = True,
@@ -200,14 +203,14 @@ def compare(
     Parameters
     ----------
     design : Design or path
-    scans : path or sequence of path
-        One scan, or several views of one gear.
+    scans : path, Scan or sequence of these
+        One scan, or several views of one gear: files, or what `read_scan` and `as_scan` give.
     part : {"pinion", "gear"} or None
         Which one was scanned; None: the one that fits.
-    before : path or sequence of path
+    before : path, Scan or sequence of these
         Scan of the same gear unworn, or its views.
     units : str
-        Unit of the scans.
+        Unit of the files; a `Scan` is in mm.
     loop, inspection : bool
         Whether to look for effects beyond registration; whether to inspect.
     ahead : Ahead or None
@@ -229,17 +232,18 @@ def compare(
     """
     from gearwear.comparison.stations import compare as run
 
-    drawn = design if isinstance(design, Design) else read_design(Path(design))
+    drawn = design if isinstance(design, Design) else read_design(cast(Path, design))
     try:
-        return run(drawn, _files(scans), part, _files(before), units, loop, inspection, ahead, progress, stream)
+        return run(drawn, _each(scans), part, _each(before), units, loop, inspection, ahead, progress, stream)
     except NotThisGear as error:
         from gearwear.identify.survey import seems
 
         raise InputError(f"{error}{seems(error.points, error.planar)}") from None
 
 
-def _files(given: Name | Sequence[Name]) -> list[Path]:
-    return [Path(given)] if isinstance(given, str | PathLike) else [Path(one) for one in given]
+def _each(given: Name | Scan | Sequence[Name | Scan]) -> list[Any]:
+    """One or several as a list; what is none of these is refused where it is read."""
+    return list(given) if isinstance(given, Iterable) and not isinstance(given, str | np.ndarray) else [given]
 
 
 def write(
@@ -352,6 +356,7 @@ def as_columns(inspection: Inspection, rows: Literal["findings", "flanks", "teet
     """
     from gearwear.report.files import inspection_columns
 
+    check_kind(inspection, Inspection, "inspection", "what gw.inspect returns")
     tables = {
         "findings": inspection_columns.finding_columns,
         "flanks": inspection_columns.flank_columns,
@@ -364,8 +369,10 @@ def as_columns(inspection: Inspection, rows: Literal["findings", "flanks", "teet
 
 def report_arrays(results: Results) -> ReportArrays:
     """The arrays of a comparison that `gearwear.figures` draws."""
+    from gearwear.comparison.results import Results
     from gearwear.report.write import report_arrays as arrays
 
+    check_kind(results, Results, "results", "what gw.compare returns")
     return arrays(results)
 
 

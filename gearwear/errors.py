@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import UnionType
 from typing import TYPE_CHECKING
 from unicodedata import category
 
@@ -40,6 +41,17 @@ class NotThisGear(InputError):
     def __reduce__(self) -> tuple[type[NotThisGear], tuple[Floats, bool, str]]:
         """Made anew in another process, which an error's own way would try with the message alone."""
         return type(self), (self.points, self.planar, str(self))
+
+
+def check_kind(value: object, kind: type | UnionType, name: str, right: str) -> None:
+    """Refuse what a stage of the API does not take, a file's name above all, before it ends in an AttributeError.
+
+    >>> check_kind("scan.ply", float, "scan", "what gw.read_scan returns")
+    Traceback (most recent call last):
+    gearwear.errors.InputError: scan of type str: what gw.read_scan returns would be right
+    """
+    if not isinstance(value, kind):
+        raise InputError(f"{name} of type {type(value).__name__}: {right} would be right")
 
 
 def printable(text: str) -> str:

@@ -19,8 +19,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gearwear as gw
+from gearwear.comparison.closing import measure
 from gearwear.design.card import Card, few, measured
 from gearwear.meshing.study import flanks_as_drawn
+from gearwear.scan.reading import read_scan as read_files
 from tests.report.fake import real_results, real_scan
 
 if TYPE_CHECKING:
@@ -156,9 +158,25 @@ class TestStages:
         (lambda: gw.register(scanned()[0], "scan.ply"), "scan of type str: what gw.read_scan"),
         (lambda: gw.propose_design("scan.ply"), "scan of type str: what gw.read_scan"),
         (lambda: gw.write(3, "out"), "result = int: one of compare or study_meshing"),
+        (lambda: gw.read_design({"gear": {"teeth": 12}}), "design of type dict: the path of a file would be right"),
+        (lambda: gw.compare({"gear": {"teeth": 12}}, scanned()[1]), "design of type dict: the path of a file"),
+        (lambda: gw.read_scan(["a.ply", "b.ply"]), "scan of type list: a file, or what gw.read_scan or gw.as_scan returns, would be right"),
+        (lambda: gw.compare(scanned()[0], np.ones((200, 3))), "scan of type ndarray: a file, or what gw.read_scan or gw.as_scan returns"),
+        (lambda: gw.compare(scanned()[0], [np.ones((200, 3))] * 2), "scan of type ndarray: a file"),
+        (lambda: gw.compare(scanned()[0], None), "scan of type NoneType: a file"),
+        (lambda: gw.find_effects(scanned()[0]), "measured of type Design: what gw.register returns would be right"),
+        (lambda: gw.find_wear(scanned_scan()[1]), "measured of type Scan: what gw.register or gw.find_effects returns"),
+        (lambda: gw.inspect(np.ones((200, 3))), "measured of type ndarray: what gw.register or gw.find_effects returns"),
+        (lambda: gw.as_columns(scanned()[0]), "inspection of type Design: what gw.inspect returns"),
+        (lambda: gw.report_arrays(scanned()[0]), "results of type Design: what gw.compare returns"),
+        (lambda: gw.exact_meshing("pinion", "gear", 114.3), "pinion of type str: one of design.gears would be right"),
+        (lambda: gw.mesh_contact(*scanned()[0].gears.values(), 114.3), "driver of type Gear: what gw.nominal_profiles returns"),
+        (lambda: gw.locate(np.ones((5, 3)), scanned()[0]), "gear of type Design: one of design.gears would be right"),
+        (lambda: gw.locate(np.ones((5, 6)), scanned()[0].gears["pinion"]), r"points of shape \(5, 6\): \(n, 3\), mm in the design's frame"),
+        (lambda: gw.locate(np.ones(3), scanned()[0].gears["pinion"]), r"points of shape \(3,\)"),
     ])  # fmt: skip
-    def test_a_name_of_a_file_in_place_of_what_is_in_it_is_told(self, stage, words):
-        """Each ended in an AttributeError of a module that the user does not know."""
+    def test_what_a_stage_does_not_take_is_told(self, stage, words):
+        """Each ended in an AttributeError or TypeError of a module that the user does not know."""
         with pytest.raises(gw.InputError, match=words):
             stage()
 
@@ -179,6 +197,19 @@ class TestStages:
         for wrong in (np.zeros(3), np.zeros((5, 4)), np.zeros((2, 3))):
             with pytest.raises(gw.InputError):
                 gw.as_scan(wrong)
+
+    def test_a_comparison_takes_scans_as_well_as_files(self):
+        """The same pose from points in memory; and the same points are one view, and no scan before wear, wherever they are from."""
+        design, file = scanned()
+        scan = gw.as_scan(np.loadtxt(file), name="mine")
+        from_file, from_scan = (measure(design, [one], loop=False) for one in (file, scan))
+        np.testing.assert_array_equal(from_scan.pose.translation, from_file.pose.translation)
+        assert from_scan.scans[0].files == ("mine",)
+        halves = read_files([gw.as_scan(half) for half in np.array_split(scan.points, 2)])
+        assert [set(half.view) for half in halves] == [{0}, {1}]
+        for before in ((), gw.as_scan(scan.points)):
+            with pytest.raises(gw.InputError, match=r"array: is (given twice|the same as mine): "):
+                gw.compare(design, scan if before else [scan, gw.as_scan(scan.points)], before=before, loop=False)
 
     @pytest.mark.parametrize(
         ("points", "normals", "words"),
@@ -284,6 +315,8 @@ def cards() -> dict[str, Card]:
         whole, whole.measured.placed.registration, whole.loop, whole.loop.effects[0], whole.wear, whole.wear.found, whole.wear.regions[0],
         whole.wear.thickness, whole.pair.contact, whole.inspection, whole.measured.scans[0], measured_gear, candidates, candidates.survey, candidates.ranked[0],
     )  # fmt: skip
+    drawn = gw.read_design(gw.example())
+    shown = (*shown, drawn, drawn.gears["pinion"], gw.nominal_profiles(drawn.gears["pinion"]))
     return {type(one).__name__: one for one in shown}
 
 
@@ -313,6 +346,20 @@ class TestCards:
             assert words.startswith(name)
             assert card.headline() in words
             assert all(label in words and text in words for label, text in card.rows()), name
+
+    def test_a_design_in_a_notebook_is_its_numbers_and_not_five_thousand_letters(self):
+        design = gw.read_design(gw.example())
+        assert repr(design).startswith("Design: pinion and gear, a = 114.3 mm, from ")
+        assert dict(design.rows())["gear"] == "24 teeth, module 6.35 mm, 15 mm wide"
+        assert "tip 88.900, reference 76.200" in repr(design.gears["pinion"])  # (z + 2) m and z m
+        assert gw.nominal_profiles(design.gears["pinion"]).headline().startswith("24 of 24 flanks known")
+
+    def test_no_wear_is_said_and_not_0_mm3_of_0_regions(self):
+        results = real_results()
+        found = replace(results.wear.found, regions=(), volume=0.0, volume_std=0.0)
+        none = replace(results, wear=replace(results.wear, found=found))
+        assert none.headline() == "pinion of 12 teeth, no wear found"
+        assert found.headline().startswith("none found, seen from ")
 
     def test_markup_in_a_files_name_is_escaped(self):
         scan = replace(scanned_scan()[1], files=("<b>&.ply",))

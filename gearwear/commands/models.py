@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
 from gearwear.commands.inputs import design_alone
-from gearwear.design import Design, Gear
+from gearwear.design import Design
 from gearwear.errors import InputError
 from gearwear.report.files.writing import check_folder, output_folder
 
@@ -88,7 +87,7 @@ def write_models(design: Design, folder: Path, rexs: bool = False) -> list[tuple
     with output_folder(folder) as stage:
         for part, gear in design.gears.items():
             write_step(solids[part], stage / f"{part}.step")
-            written.append((folder / f"{part}.step", _describe(gear)))
+            written.append((folder / f"{part}.step", gear.headline()))
         if pair is not None:
             write_step(pair, stage / "pair.step")
             written.append((folder / "pair.step", f"pinion and gear in mesh, centre distance {design.centre_distance:g} mm"))
@@ -96,13 +95,3 @@ def write_models(design: Design, folder: Path, rexs: bool = False) -> list[tuple
             (stage / "design.rexs").write_text(model, encoding="utf-8", newline="\n")
             written.append((folder / "design.rexs", "the design as a REXS model"))
     return written
-
-
-def _describe(gear: Gear) -> str:
-    spec = gear.spec
-    module = f"module {spec.normal_module:g} mm"
-    if spec.helix_angle != 0.0:
-        module = f"normal {module}, {abs(math.degrees(spec.helix_angle)):g}° {spec.hand} hand"
-        module += f", gap {spec.gap:g} mm" if spec.gap > 0.0 else ""
-    ring = ", a ring" if spec.internal else ""
-    return f"{spec.name}{ring}, {gear.teeth} teeth, {module}, {gear.face_width:g} mm wide"

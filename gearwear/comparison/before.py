@@ -19,13 +19,14 @@ from gearwear.errors import InputError
 from gearwear.placing.cells import Cells
 from gearwear.robust import median_scale
 from gearwear.scan.reading import check_different, read_scan
+from gearwear.scan.types import Scan
 
 MOST_ROUNDS = 3
 """Of the loop, until the sides that changed are those it left out; numerical."""
 
 
 def unworn_gear(
-    stated: Design, after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool, stream: bool | None = None
+    stated: Design, after: MeasuredGear, files: Sequence[str | Path | Scan], units: str, loop: bool, stream: bool | None = None
 ) -> tuple[MeasuredGear, SameTeeth]:
     """The same gear before wear, in the same cells, its teeth numbered as those of the scan; and how these were told. The scan has no
     artefact: of its scale is known what was stated of the scanner, not what the worn gear's artefact told."""

@@ -20,15 +20,17 @@ from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.loop import Loop, close_loop
 from gearwear.diagnose.pooled import carried, left_out, loop_grid, rough_grid
 from gearwear.diagnose.space_waves import SpaceWave
+from gearwear.errors import check_kind
 from gearwear.placing.cells import CellGrid, Cells, bin_points, cells_of, noise
 from gearwear.placing.sums import CellSums
 from gearwear.scan.reading import read_scan
+from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
 
 
 def measure(
     design: Design,
-    files: Sequence[str | Path],
+    files: Sequence[str | Path | Scan],
     part: str | None = None,
     units: str = "mm",
     loop: bool = True,
@@ -41,7 +43,7 @@ def measure(
     ----------
     design : Design
         One gear or a pair.
-    files : sequence of path
+    files : sequence of path or Scan
         One scan, or several views of one gear.
     part : {"pinion", "gear"} or None
         Which one was scanned; None: the one whose size fits.
@@ -85,6 +87,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     worn : frozenset of Side or None
         Sides that are known to be worn throughout; None: the scan decides.
     """
+    check_kind(measured, MeasuredGear, "measured", "what gw.register returns")
     scan = _Scan(measured, measured.first, measured.placed.located, worn=worn)
     look = scan.looked_at()
     if look is not None:

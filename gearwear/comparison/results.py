@@ -349,6 +349,8 @@ class Results(Card):
         return ~(near | find_far_points(located, grid)[1])
 
     def headline(self) -> str:
+        if not self.wear.regions:
+            return f"{self.part} of {self.gear.teeth} teeth, no wear found"
         size = measured(self.wear.volume, self.wear.volume_std, UNIT[self.planar])
         return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
 

@@ -66,9 +66,9 @@ NO_LOAD = "the design states no [load]"
 @on_one_thread
 def compare(
     design: Design,
-    scans: Sequence[str | Path],
+    scans: Sequence[str | Path | Scan],
     part: str | None = None,
-    before: Sequence[str | Path] = (),
+    before: Sequence[str | Path | Scan] = (),
     units: str = "mm",
     loop: bool = True,
     inspection: bool = True,
@@ -82,14 +82,14 @@ def compare(
     ----------
     design : Design
         One gear or a pair.
-    scans : sequence of path
+    scans : sequence of path or Scan
         One scan, or several views of one gear.
     part : {"pinion", "gear"} or None
         Which one was scanned; None: the one whose size fits.
-    before : sequence of path
+    before : sequence of path or Scan
         Scan of the same gear unworn, or its views.
     units : str
-        Unit of the scans.
+        Unit of the files.
     loop : bool
         Whether to look for effects beyond registration.
     inspection : bool
@@ -140,7 +140,7 @@ def compare(
         halves=inspected if len(inspected) == 2 else (),
         changes=(*changes, *thicker, *(() if met is None else met.changes)),
         notes=notes_of(design, measured, wear, scanned.same, pair, ahead),
-        before_files=tuple(str(path) for path in before),
+        before_files=() if scanned.unworn is None else tuple(name for scan in scanned.unworn.scans for name in scan.files),
         same_teeth=scanned.same,
         patterns=kept_patterns(measured),
         before_sha256=() if scanned.unworn is None else tuple(digest for scan in scanned.unworn.scans for digest in scan.sha256),
@@ -187,9 +187,9 @@ class Scanned:
 
 def _scanned(
     design: Design,
-    scans: Sequence[str | Path],
+    scans: Sequence[str | Path | Scan],
     part: str | None,
-    before: Sequence[str | Path],
+    before: Sequence[str | Path | Scan],
     units: str,
     loop: bool,
     stream: bool | None,

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearwear.arrays import Floats
+from gearwear.design.card import Card, CardRow
 from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function, roll_length
 from gearwear.design.modification import DrawnFlank
 from gearwear.design.quantity import apart, as_given, at_least, at_most, not_zero
@@ -29,8 +30,8 @@ UNKNOWN_RIM = 3.0
 """Modules beyond its roots up to which the body of a ring goes where no rim is stated."""
 
 
-@dataclass(frozen=True, slots=True)
-class Gear:
+@dataclass(frozen=True, slots=True, repr=False)
+class Gear(Card):
     """Exact transverse geometry of a spur or helical gear, external or a ring (ISO 21771:2007; root by rack, cutter or drawing).
 
     Build it with `Gear.from_spec`. Radii and lengths in mm, angles in rad. Roll lengths L are
@@ -59,6 +60,22 @@ class Gear:
     """Where the involute ends at the top: the tip circle, or the start of the tip chamfer."""
     root_stated: bool = True
     """Whether the drawing says how the root is made; that of a ring without cutter or fillet is assumed, and no datum."""
+
+    def headline(self) -> str:
+        spec = self.spec
+        module = f"module {spec.normal_module:g} mm"
+        if spec.helix_angle != 0.0:
+            module = f"normal {module}, {abs(math.degrees(spec.helix_angle)):g}° {spec.hand} hand"
+            module += f", gap {spec.gap:g} mm" if spec.gap > 0.0 else ""
+        ring = ", a ring" if spec.internal else ""
+        return f"{spec.name}{ring}, {self.teeth} teeth, {module}, {self.face_width:g} mm wide"
+
+    def rows(self) -> list[CardRow]:
+        radii = {"tip": self.tip_radius, "reference": self.reference_radius, "form": self.form_radius, "root": self.root_radius}
+        return [
+            ("diameters", ", ".join(f"{name} {2.0 * radius:.3f}" for name, radius in radii.items()) + " mm"),
+            ("tooth", f"{self.tooth_thickness:.4f} mm thick, {math.degrees(self.spec.normal_pressure_angle):g}°"),
+        ]
 
     @classmethod
     def from_spec(cls, spec: GearSpec) -> Gear:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.internal import InternalPair, Wheel
 from gearwear.design.involute import inverse_involute, involute_function
@@ -16,7 +17,7 @@ from gearwear.design.quantity import apart, as_given, at_least, at_most, not_zer
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
 from gearwear.design.weighing import WeighingSpec
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 
 FILLET_KEYS = "cutter_teeth and cutter_tip_radius, or fillet_radius,"
 """What a drawing would say of a ring's root."""
@@ -26,8 +27,8 @@ MAX_HELIX_DIFFERENCE = 1e-9
 """Largest sum of the two helix angles of a pair, rad: they are opposite."""
 
 
-@dataclass(frozen=True, slots=True)
-class Design:
+@dataclass(frozen=True, slots=True, repr=False)
+class Design(Card):
     """What was drawn: a gear alone, or a pair.
 
     Parameters
@@ -68,6 +69,16 @@ class Design:
     datum: DatumSpec = field(default_factory=DatumSpec)
     weighing: WeighingSpec | None = None
 
+    def headline(self) -> str:
+        source = [f"from {self.source}"] if self.source else []
+        return ", ".join([f"{' and '.join(self.gears)}", *([f"a = {self.centre_distance:g} mm"] if self.pair else []), *source])
+
+    def rows(self) -> list[CardRow]:
+        return [
+            *((name, gear.headline().removeprefix(f"{name}, ")) for name, gear in self.gears.items()),
+            *(("note", text) for text in self.warnings),
+        ]
+
     @property
     def centre_distance(self) -> float:
         """Working centre distance in mm; the standard one where none is given."""
@@ -88,9 +99,8 @@ class Design:
 
 
 def check_design(design: object) -> None:
-    """Refuse what is no design, a file's name above all: the stages of the API take what `read_design` returns."""
-    if not isinstance(design, Design):
-        raise InputError(f"design of type {type(design).__name__}: what gw.read_design returns would be right")
+    """Refuse what is no design: the stages of the API take what `read_design` returns."""
+    check_kind(design, Design, "design", "what gw.read_design returns")
 
 
 def opposite_hands(pinion: Gear, gear: Gear) -> bool:

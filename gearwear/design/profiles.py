@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.card import Card
 from gearwear.design.gear import Gear
-from gearwear.design.quantity import as_given, at_least, at_most
+from gearwear.design.quantity import as_given, at_least, at_most, counted
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 
@@ -21,8 +22,8 @@ ROUNDING = 1e-9
 """mm; of a radius that came from a diameter."""
 
 
-@dataclass(frozen=True, slots=True)
-class ToothProfiles:
+@dataclass(frozen=True, slots=True, repr=False)
+class ToothProfiles(Card):
     """Half angles of all tooth sides.
 
     Parameters
@@ -44,6 +45,10 @@ class ToothProfiles:
     z: Floats
     half_angle: Floats
     measured: Bools | None = None
+
+    def headline(self) -> str:
+        known = int(np.isfinite(self.half_angle).all(axis=(2, 3)).sum())
+        return f"{known} of {2 * self.gear.teeth} flanks known, {len(self.radius)} radii and {counted(len(self.z), 'height')}; {self.gear.headline()}"
 
     @property
     def loss(self) -> Floats:

@@ -19,6 +19,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.root import fillet_table
 from gearwear.design.side import Side
 from gearwear.design.twist import hand_at, normal_lean, section_angle, segments, turn_at
+from gearwear.errors import InputError, check_kind
 from gearwear.processors import threads
 
 FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
@@ -157,7 +158,7 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     Parameters
     ----------
     points : (n, 3) float
-        In the design frame, mm.
+        In the design frame, mm; what is not finite is on no surface (OTHER).
     gear : Gear
         The nominal gear.
     bands : Bands or None
@@ -168,6 +169,11 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     Returns
     -------
     SurfacePoints
+
+    Raises
+    ------
+    InputError
+        If these are no points in space, or no gear.
 
     Notes
     -----
@@ -185,7 +191,10 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     belongs to the one with the greatest signed distance, within `bands`. Below and above the form circle the tooth
     side is split by the point's own radius.
     """
+    check_kind(gear, Gear, "gear", "one of design.gears")
     points = np.asarray(points, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise InputError(f"points of shape {points.shape}: (n, 3), mm in the design's frame, would be right")
     n = len(points)
     out = SurfacePoints.room(n)
     limits = bands or Bands.wide(gear)
@@ -294,7 +303,8 @@ def _locate_chunk(gear: Gear, bands: Bands, table: tuple[Floats, Floats], points
     surface[~((deviation >= least.take(surface)) & (deviation <= most.take(surface)))] = OTHER
 
     out.surface[:] = surface
-    out.tooth[:] = seen.index - gear.teeth * np.floor(seen.index / gear.teeth)
+    index = np.nan_to_num(seen.index)  # what is no number is on no surface, and on no tooth of another gear either
+    out.tooth[:] = index - gear.teeth * np.floor(index / gear.teeth)
     out.side[:] = np.where((surface == FLANK) | (surface == FILLET), seen.side, 0.0)
     out.roll[:] = np.where(surface == FLANK, seen.reach - gear.orientation * gear.base_helix_cosine * deviation, np.nan)
     known = surface != OTHER

@@ -21,7 +21,7 @@ from gearwear.design.quantity import as_given, at_least, at_most
 from gearwear.design.side import Side
 from gearwear.design.spec import shown
 from gearwear.design.twist import Toothing, refuse
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 from gearwear.meshing.backlash import check_mesh, transverse_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
 from gearwear.meshing.passes import CYCLES, Cycle, Passes, Positions, pitches
@@ -310,6 +310,7 @@ def _contact_ratio(advance: Floats, n: int, tolerance: float) -> float:
 def check_contact(driver: ToothProfiles, driven: ToothProfiles, centre: float) -> None:
     """Refuse flanks that are not known everywhere, and gears that do not mesh at this centre distance, mm: tips must not meet roots."""
     for part, profiles in (("driver", driver), ("driven gear", driven)):
+        check_kind(profiles, ToothProfiles, part, "what gw.nominal_profiles returns")
         missing = int((~np.isfinite(profiles.half_angle)).sum())
         if missing:
             raise InputError(

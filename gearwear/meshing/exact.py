@@ -13,6 +13,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import tip_clearances
 from gearwear.design.quantity import not_zero
 from gearwear.design.twist import Toothing, refuse
+from gearwear.errors import check_kind
 from gearwear.meshing.backlash import (
     Backlash,
     backlash,
@@ -126,6 +127,8 @@ def exact_meshing(pinion: Gear, gear: Gear, centre_distance: float) -> ExactMesh
       roll length, gear       SAP 19.3485, EAP 41.0766 mm
       tip clearance           pinion 4.0095, gear 4.0095 mm
     """
+    for name, one in (("pinion", pinion), ("gear", gear)):
+        check_kind(one, Gear, name, "one of design.gears")
     refuse(pinion, "meshing with the ring first, instead of its pinion,", Toothing.INTERNAL)
     pitch_pinion, pitch_gear = operating_pitch_radii(pinion, gear, centre_distance)
     clearance_pinion, clearance_gear = tip_clearances(pinion, gear, centre_distance)

@@ -15,7 +15,7 @@ from typing import cast
 
 import numpy as np
 
-from gearwear.errors import InputError, NotEnoughMemory, printable, readable
+from gearwear.errors import InputError, NotEnoughMemory, check_kind, printable, readable
 from gearwear.memory import allowed, check_memory
 from gearwear.scan.clean import clean
 from gearwear.scan.contents import Contents
@@ -49,15 +49,15 @@ READERS: dict[str, Callable[[bytes], Contents]] = {
 """Reader by the end of the file's name."""
 
 
-def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm", stream: bool | None = False) -> list[Scan]:
+def read_scan(paths: Sequence[str | PathLike[str] | Scan], units: str = "mm", stream: bool | None = False) -> list[Scan]:
     """Read the views of one gear, each in its own axes.
 
     Parameters
     ----------
-    paths : sequence of path
-        One file per view.
+    paths : sequence of path or Scan
+        One file per view, or what was read of it.
     units : str
-        "mm", "cm", "m", "um" or "in".
+        "mm", "cm", "m", "um" or "in"; a `Scan` is in mm.
     stream : bool or None
         Whether to hold only a sample of the points in memory (`Scan.chunks`); None: where there are many (`streaming.STREAM_FROM`). Views of
         one gear are not streamed.
@@ -78,7 +78,7 @@ def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm", stream: b
         raise InputError(f"{len(paths)} views of one gear are not streamed: one scan, or all read as a whole, would be right")
     if len(paths) == 1:
         return [read_one(paths[0], units, stream)]
-    scans = [replace(scan, view=scan.view + np.int8(i)) for i, scan in enumerate(_all(paths, units))]
+    scans = [replace(scan, view=np.full_like(scan.view, i)) for i, scan in enumerate(_all(paths, units))]
     sections = [scan for scan in scans if scan.planar]
     if sections and len(sections) < len(scans):
         raise InputError(f"{sections[0].files[0]} is a planar section and another scan is not: views of one kind would be right")
@@ -87,7 +87,7 @@ def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm", stream: b
 
 
 def check_different(scans: Sequence[Scan], others: Sequence[Scan] = (), what: str = "each view once would be right") -> None:
-    """Refuse a file that was given twice: as two views of one gear its points would count double and every ± would be too small, and as the
+    """Refuse a file, or points without one, that was given twice: as two views of one gear its points would count double and every ± would be too small, and as the
     scan before wear as well nothing would have changed.
 
     Parameters
@@ -105,26 +105,27 @@ def check_different(scans: Sequence[Scan], others: Sequence[Scan] = (), what: st
         If two do; it names both.
     """
     seen: dict[str, str] = {}
-    for digests, name in ((scan.sha256, scan.files[0]) for scan in [*scans, *others]):
-        for digest in digests:
+    for scan in [*scans, *others]:
+        name = scan.files[0]
+        for digest in scan.sha256 or (hashlib.sha256(scan.points.tobytes()).hexdigest(),):
             if digest in seen:
                 raise InputError(f"{name}: is {'given twice' if seen[digest] == name else f'the same as {seen[digest]}'}: {what}")
             seen[digest] = name
 
 
-def _all(paths: Sequence[str | PathLike[str]], units: str) -> list[Scan]:
+def _all(paths: Sequence[str | PathLike[str] | Scan], units: str) -> list[Scan]:
     if len(paths) > 127:
         raise InputError(f"{len(paths)} scans are given: at most 127 views of one gear would be right")
     return [read_one(path, units) for path in paths]
 
 
-def read_one(path: str | PathLike[str], units: str = "mm", stream: bool | None = False) -> Scan:
+def read_one(path: str | PathLike[str] | Scan, units: str = "mm", stream: bool | None = False) -> Scan:
     """Read and clean one file.
 
     Parameters
     ----------
-    path : path
-        The end of its name says the format (`READERS`); it may be compressed by gzip.
+    path : path or Scan
+        The end of its name says the format (`READERS`); it may be compressed by gzip. A `Scan` is returned as it is.
     units : str
         Unit of the coordinates. A 3MF states its own, which "mm" leaves as it is and any other name overrules.
     stream : bool or None
@@ -141,6 +142,9 @@ def read_one(path: str | PathLike[str], units: str = "mm", stream: bool | None =
         Whatever is wrong with the file, in one line that begins with its name. No other exception comes out.
     """
     scale = factor(units)
+    if isinstance(path, Scan):
+        return path
+    check_kind(path, str | PathLike, "scan", "a file, or what gw.read_scan or gw.as_scan returns,")
     try:
         large = streamed(Path(path), units, scale, stream)
         if large is not None:

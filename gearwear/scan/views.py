@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 from gearwear.scan.types import Scan
+
+SCAN = "what gw.read_scan or gw.as_scan returns"
 
 
 def views_of(scan: Scan | Sequence[Scan]) -> tuple[Scan, ...]:
@@ -19,8 +21,7 @@ def views_of(scan: Scan | Sequence[Scan]) -> tuple[Scan, ...]:
     views = (scan,) if isinstance(scan, Scan) else tuple(scan)
     other = next((view for view in views if not isinstance(view, Scan)), None)
     if other is not None:
-        kind = type(scan if isinstance(scan, str) else other).__name__
-        raise InputError(f"scan of type {kind}: what gw.read_scan or gw.as_scan returns would be right")
+        check_kind(scan if isinstance(scan, str) else other, Scan, "scan", SCAN)
     if not views:
         raise InputError("no scan is given; what gw.read_scan returns would be right")
     if len({view.planar for view in views}) > 1:

@@ -199,8 +199,8 @@ class Wear(Card):
         return self.limit, 9.0 * self.limit * float(self.side_maps.area[-1])
 
     def headline(self) -> str:
-        size = measured(self.volume, self.volume_std, UNIT[self.planar])
-        return f"{size} in {counted(len(self.regions), 'region')}, seen from {1e3 * self.limit:.1f} µm on"
+        size = f"{measured(self.volume, self.volume_std, UNIT[self.planar])} in {counted(len(self.regions), 'region')}"
+        return f"{size if self.regions else 'none found'}, seen from {1e3 * self.limit:.1f} µm on"
 
     def rows(self) -> list[CardRow]:
         return few(

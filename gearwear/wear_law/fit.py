@@ -383,7 +383,7 @@ def fit_wear_law(
     Raises
     ------
     InputError
-        If arrays do not match, too few points lie on the path of contact, a standard deviation is not positive, lengths
+        If arrays do not match, a depth is beyond the middle of the tooth, too few points lie on the path of contact, a standard deviation is not positive, lengths
         of roll do not rise, the load sharing is none of such gears, or the contact ratio is 2 or more.
 
     Notes
@@ -408,6 +408,11 @@ def fit_wear_law(
         raise InputError(f"wear law: correlation length = {correlation_length:g} mm: must not be below 0")
     path = path_of_contact(gear, mate, centre_distance)
     profile = profile.on(path)
+    deepest, thick = float(np.abs(profile.depth).max()), gear.tooth_thickness
+    if deepest > 0.5 * thick:
+        raise InputError(
+            f"wear law: a depth of {deepest:.4g} mm is beyond the middle of a tooth {thick:.4g} mm thick: mm, not µm, would be right"
+        )
     models = LoadSharing.of(gear)
     if sharing is not None:
         check_choice("sharing", sharing, models)

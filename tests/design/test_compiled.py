@@ -130,9 +130,10 @@ def test_points_off_every_surface_are_no_exception(both):
     assert len(both(np.empty((0, 3)), gear)[1]) == 0
 
 
-def test_what_is_not_a_number_belongs_to_nothing(monkeypatch):
-    """And its neighbours are not touched by it."""
-    monkeypatch.setattr(compiled, "LEAST", 0)
+@pytest.mark.parametrize("least", [0, math.inf])
+def test_what_is_not_a_number_belongs_to_nothing(monkeypatch, least):
+    """And its neighbours are not touched by it; without numba it was on tooth −2147483648."""
+    monkeypatch.setattr(compiled, "LEAST", least)
     gear = HELICAL["right 15"]
     points = anywhere(gear)
     lost = points.copy()

@@ -398,6 +398,7 @@ def test_single_contact_is_as_sure_as_teeth_are_alike(pinion, wheel):
     [
         (lambda pair, fit: fit_wear_law(*pair, "114.3", ROLL, law(ROLL)), "centre_distance = '114.3': a number, in mm, would be right"),
         (lambda pair, fit: fit_wear_law(*pair, C, 4.0, law(ROLL)), "must match"),
+        (lambda pair, fit: fit_wear_law(*pair, C, ROLL, 1e3 * law(ROLL)), "is beyond the middle of a tooth 9.975 mm thick: mm, not µm,"),
         (lambda pair, fit: fit_wear_law(*pair, C, ROLL, law(ROLL), correlation_length="2"), "correlation_length = '2': a number, in mm,"),
         (lambda pair, fit: fit_wear_law(*pair, C, ROLL, law(ROLL), width=np.ones(3)), "width must be a number of mm of roll, or one for each"),
         (lambda pair, fit: fit_wear_law(*pair, C, ROLL, law(ROLL), width=math.nan), "width must be a number of mm of roll, or one for each"),

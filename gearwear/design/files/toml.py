@@ -9,6 +9,7 @@ import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import fields, replace
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +45,7 @@ from gearwear.design.quantity import as_given, outside
 from gearwear.design.spec import ADDENDUM, DEDENDUM, GearSpec, check_module, check_teeth, shown
 from gearwear.design.standards import MM_PER_INCH
 from gearwear.design.tolerance import GearTolerance
-from gearwear.errors import InputError, readable
+from gearwear.errors import InputError, check_kind, readable
 
 MODULES = ("module", "normal_module", "transverse_module", "diametral_pitch")
 SHARED = (*MODULES, "pressure_angle", "face_width", "gap")
@@ -108,6 +109,7 @@ def read_design(path: str | Path) -> Design:
         If the file cannot be read, is not of its format, holds an unknown key, or describes a gear or pair that
         cannot exist.
     """
+    check_kind(path, str | PathLike, "design", "the path of a file")
     file = Path(path)
     data = read_small(file, "a design in TOML")
     try:
