@@ -203,7 +203,7 @@ def _number(option: str, text: str) -> float:
 def _remains(gauges: Sequence[Gauge], proposal: Proposal) -> list[str]:
     lines = ["What remains (measured − proposed):"]
     for gauge, residual in zip(gauges, proposal.residuals, strict=True):
-        lines.append(f"  {gauge.name:<40}{gauge.length.value:>11.4f} mm{1e3 * residual:>+9.0f} µm")
+        lines.append(f"  {gauge.name:<40}{gauge.length.value:>11.4f} mm{1e3 * residual:>+z9.0f} µm")
     return lines
 
 

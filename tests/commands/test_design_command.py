@@ -38,6 +38,10 @@ def test_the_papers_pinion_from_two_diameters(capsys):
     assert "assumed: no dimension given depends on it" in text
 
 
+def test_what_is_left_of_a_dimension_has_no_minus_zero(capsys):
+    assert "43.9999 mm       +0 µm" in printed(capsys, "--teeth", 20, "--tip-diameter", 43.9999, "--face-width", 10)
+
+
 def test_dimensions_in_inches(capsys):
     text = printed(capsys, "--teeth", 12, "--tip-diameter", 3.5, "--face-width", 0.59055, "--units", "in")
     assert "diametral_pitch = 4 " in text

@@ -1,8 +1,10 @@
 """The charts say what the numbers say: magnification on paper, marks, what was not seen."""
 
 import io
+import math
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,8 +19,9 @@ from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.ranges import profile_range
 from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, topography_chart
 from gearwear.report.charts.panel import GROUPS
-from gearwear.report.charts.sheet import micrometres, nice, plain
+from gearwear.report.charts.sheet import headline, micrometres, nice, plain
 from gearwear.report.figures.colours import ALARM, INK, ORANGE, PAPER, TEAL
+from gearwear.report.files.inspection import lines as summary
 from tests.inspection.synthetic import displaced, flanks
 
 
@@ -39,6 +42,28 @@ def found(points_of, pinion):
 
 def words(figure):
     return [t.get_text() for axis in figure.axes for t in axis.texts] + [t.get_text() for t in figure.texts]
+
+
+def test_the_head_of_a_helical_gears_chart_has_its_helix():
+    """It read z = 23 m = 2.5 mm α = 20°, which no one can tell from a spur gear."""
+    gear = Gear.from_spec(GearSpec("gear", 23, 2.5, 30.0, helix_angle=math.radians(-25.0), profile_shift=0.2))
+    page = Figure().add_axes((0.0, 0.0, 1.0, 1.0))
+    headline(page, "Helix", SimpleNamespace(gear=gear), 10.0)
+    assert "z = 23   mn = 2.5 mm   α = 20°   β = 25° left   x = 0.2   d = 63.444 mm" in page.texts[1].get_text()  # z m_n / cos β
+
+
+def test_warnings_on_the_terminal_are_whole_and_the_rest_is_counted(found):
+    """They ended amid a sentence: "The scan is too thin for the standard's …"."""
+    coat = "taken out as the scanner's or the mounting's: a coat 12.00 ± 0.18 µm thick on every surface; --no-loop leaves it in"
+    thin = "The scan is too thin for the standard's filter: in places the cut-off of the profile is 1.18 mm in place of 0.37 mm."
+    short = "of flank 3 left nothing was seen"
+
+    def warned(*doubts):
+        return " ".join(text for text, style in summary(found, "a gear", doubts) if style == "yellow" and text[0] not in "fF")
+
+    assert warned(coat, thin, short) == f"! {coat[0].upper()}{coat[1:]}. And 2 more, in inspection.json."
+    assert warned(short, short) == f"! O{short[1:]}. O{short[1:]}."
+    assert warned() == ""
 
 
 def lines(figure, colour):

@@ -207,6 +207,14 @@ def test_rounding_is_not_blown_up_to_a_curve(axis, draw, least):
     assert np.ptp(axis.get_ylim()) >= least
 
 
+def test_a_play_that_is_the_same_all_round_does_not_lie_on_the_frame(axis):
+    """Its range is rounding, and the scale ended on its line."""
+    turn = np.linspace(0.0, 360.0, 100)
+    figures.backlash(axis, MeshingCurves(turn, np.zeros(100), np.full(100, 34.1), 34.1 + 1e-13 * np.sin(7.0 * turn)))
+    low, high = axis.get_ylim()
+    assert low < 0.0 and high > 0.0341 + 0.04 * (high - low)
+
+
 @pytest.fixture(scope="module")
 def pair():
     pinion, gear = (Gear.from_spec(GearSpec(name, z, 6.35, 15.0)) for name, z in (("pinion", 12), ("gear", 24)))

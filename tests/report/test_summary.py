@@ -181,6 +181,14 @@ def test_what_faint_wear_may_come_to_is_told_of_a_gear_without_any():
         assert "with wear too shallow to be found the loss may be up to 3.1 mm³" in text.replace("\u202f", " ")
 
 
+def test_faint_wear_is_not_told_to_come_to_less_than_the_value_may_be():
+    """3.767 ± 0.022 reaches 3.810 by itself: "up to 3.8" of a limit of 3.826 said less than the ± beside it."""
+    results = changed(changed(fake_results(), "wear.found.volume", 3.767), "wear.found.volume_std", 0.0218)
+    results = changed(results, "wear.found.faint", 0.059)
+    assert results.volume_range[1] == pytest.approx(3.826)
+    assert "the loss may be up to 3.83 mm³" in verdict(results).replace("\u202f", " ").replace("\u00a0", " ")
+
+
 def test_without_a_region_the_limits_stand_beside_the_nought():
     results = changed(fake_results(), "wear.found.regions", ())
     results = changed(results, "wear.undecided", ((110.0, 5.0),))

@@ -97,7 +97,7 @@ def test_no_fit_gives_a_reason_and_no_number():
     why = "wear on 2 teeth of one side; a law is fitted from 3 worn teeth on"
     law = WearStudy(Side.RIGHT, (), (), (), why)
     assert wear_law_record(law) == {"fitted": False, "flank": "right", "why_not": why}
-    assert law_words(law) == f"No wear law was fitted: W{why[1:]}."
+    assert law_words(law) == f"No wear law was fitted: {why}."
     assert forecast_words(law) == forecast_words(None) == far_words(law) == "" and left_words(law) == forecast_rows(law) == []
 
 

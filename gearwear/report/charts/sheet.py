@@ -55,9 +55,10 @@ def headline(page: Axes, title: str, inspection: Inspection, height: float) -> N
     """The title of a sheet at a height in mm of paper, and beside it the gear."""
     gear = inspection.gear
     spec = gear.spec
+    helix = f"   β = {abs(math.degrees(spec.helix_angle)):g}° {spec.hand}" if spec.helix_angle else ""
     shift = f"   x = {spec.profile_shift:g}" if spec.profile_shift else ""
     words = (
-        f"z = {gear.teeth}   m = {spec.normal_module:g} mm   α = {math.degrees(spec.normal_pressure_angle):g}°{shift}"
+        f"z = {gear.teeth}   m{'n' if helix else ''} = {spec.normal_module:g} mm   α = {math.degrees(spec.normal_pressure_angle):g}°{helix}{shift}"
         f"   d = {2 * gear.reference_radius:.3f} mm   db = {2 * gear.base_radius:.3f} mm   b = {spec.face_width:g} mm"
     )
     name = page.text(8, height, title, fontsize=15, fontweight="bold", color=INK, va="baseline")

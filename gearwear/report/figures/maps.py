@@ -319,7 +319,8 @@ def backlash(axis: Axes, curves: MeshingCurves, label: str = "worn") -> Axes:
     axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_worn_um, color=ORANGE, label=label)
     axis.set(xlabel="rotation of the pinion, °", ylabel="circumferential\nbacklash, mm")
     low, high = axis.get_ylim()
-    high = max(high, 0.01)
+    # Of a play that is the same all round only rounding makes a range: its line lay on the frame.
+    high = max(high, 1.05e-3 * float(max(curves.backlash_design_um.max(), curves.backlash_worn_um.max())), 0.01)
     axis.set_ylim(low if low < -0.05 * high else -0.05 * high, high)
     return _over_a_turn(axis, curves)
 

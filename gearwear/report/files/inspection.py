@@ -229,9 +229,17 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     if any(finding.grade.verdict is Verdict.NOT_RESOLVABLE for finding in inspection.findings):
         share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
         said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
-    warned = unbroken(" ".join(map(sentence, doubts)))
-    room = 2 if inspection.settings.k_bands is None else 1
-    return said + [(text, "yellow") for text in textwrap.wrap(f"! {warned}", 80, max_lines=room, placeholder=" …") if doubts]
+    return said + [(text, "yellow") for text in _warned(doubts, 2 if inspection.settings.k_bands is None else 1)]
+
+
+def _warned(doubts: Sequence[str], room: int) -> list[str]:
+    """As many warnings as so many lines hold, each whole, and how many more there are; the first, where it alone is too long, as far as it goes."""
+    for kept in range(len(doubts), 0, -1):
+        more = f" And {len(doubts) - kept} more, in inspection.json." if kept < len(doubts) else ""
+        lines = textwrap.wrap(unbroken(f"! {' '.join(map(sentence, doubts[:kept]))}{more}"), 80)
+        if len(lines) <= room:
+            return lines
+    return textwrap.wrap(unbroken(f"! {sentence(doubts[0])}"), 80, max_lines=room, placeholder=" …") if doubts else []
 
 
 def _means(inspection: Inspection) -> list[str]:

@@ -121,7 +121,12 @@ def _too_faint(results: Results) -> str:
         return ""
     limits = results.open_volume.of_such_teeth
     assert limits is not None
-    return f"with wear too shallow to be found the loss may be up to {_volume(limits[1], results)}"
+    # Told since it lies beyond the volume's own 95 %: to as many digits as show that.
+    own = results.wear.volume + NORMAL_95 * results.wear.volume_std
+    digits = next((d for d in (2, 3) if float(f"{limits[1]:.{d}g}") > own), 4)
+    return (
+        f"with wear too shallow to be found the loss may be up to {significant(limits[1], digits)}{SPACE}{UNIT[results.planar]}"
+    )
 
 
 def _limits(results: Results) -> str:

@@ -49,7 +49,7 @@ def law_words(study: WearStudy) -> str:
     """What the mean worn profile is consistent with, or why that cannot be told."""
     uneven = "" if study.across is None else across_words(study.across)
     if study.best is None:
-        return " ".join(map(sentence, filter(None, [f"No wear law was fitted: {sentence(study.why_not)}", uneven])))
+        return " ".join(map(sentence, filter(None, [f"no wear law was fitted: {study.why_not}", uneven])))
     said = [f"wear law, fitted to the mean of {counted(len(study.teeth), f'{study.side} flank')}: {study.best.words}"]
     if study.left_out:
         which, single = listed(str(tooth + 1) for tooth in study.left_out), len(study.left_out) == 1
