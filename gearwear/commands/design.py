@@ -327,7 +327,7 @@ def _doubts(seen: Survey, best: CandidateGear) -> list[str]:
             "cutter_tip_radius, or fillet_radius, of the drawing make them one.",
         ]
         if not seen.rim_diameter:
-            said.append("Note: the outside was not seen: rim_diameter gives the ring a volume and a solid model.")
+            said.append("Note: the outside was not seen: rim_diameter, which a comparison needs, gives the ring a volume.")
     if not USUAL[0] < 2.0 * seen.tip_radius < USUAL[1]:
         said.append(f"Note: {2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
     return said

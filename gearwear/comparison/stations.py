@@ -113,7 +113,10 @@ def compare(
     """
     for name, drawn in design.gears.items():
         if name == part or len(design.gears) == 1:
-            drawn.section_area()  # a ring without its outside has none: said before the work, not after it
+            try:
+                drawn.section_area()  # a ring without its outside has none: said before the work, not after it
+            except InputError as error:
+                raise InputError(f"{design.source}: {error}" if design.source else str(error)) from None
     scanned = _scanned(design, scans, part, before, units, loop, stream, progress)
     progress("wear")
     wear, wear_before = each([partial(scanned.find, scanned.as_made), partial(without_loop, scanned.measured, scanned.unworn)])

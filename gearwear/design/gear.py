@@ -497,7 +497,7 @@ class Gear(Card):
         """
         rb, psi, orientation = self.base_radius, self.base_half_angle, self.orientation
         if self.spec.internal and self.body_radius == 0.0:
-            raise InputError(f"[{self.spec.name}] rim_diameter is missing: mm; without it a ring has no section and no volume")
+            raise InputError(f"[{self.spec.name}] rim_diameter is missing: the ring's outside in mm; for its wear any will do")
 
         def under_involute(roll: float) -> float:  # ∫ ψ(r) r dr with r dr = L dL
             cubic, rest = roll**3 / (3 * rb), 0.5 * ((roll**2 + rb**2) * math.atan(roll / rb) - rb * roll)

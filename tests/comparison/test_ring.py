@@ -157,6 +157,6 @@ def test_what_the_drawing_takes_off_a_ring_s_flanks_is_no_effect():
 
 
 def test_a_ring_without_its_outside_is_refused_before_its_scan_is_read(tmp_path):
-    drawn = Design({"gear": Gear.from_spec(replace(designed(SPUR).spec, rim_diameter=0.0))})
-    with pytest.raises(InputError, match="rim_diameter is missing"):
+    drawn = Design({"gear": Gear.from_spec(replace(designed(SPUR).spec, rim_diameter=0.0))}, source="ring.toml")
+    with pytest.raises(InputError, match=r"ring.toml: \[gear\] rim_diameter is missing: the ring's outside in mm"):
         compare(drawn, [tmp_path / "no such scan.ply"])

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from gearwear.design import Gear, GearSpec
@@ -16,7 +17,8 @@ from gearwear.report import figures
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import DIVERGING, ColourScale, colour_scale
 from gearwear.report.figures.surfaces import section, whole_outline
-from tests.report.fake import WORN, fake_arrays, fake_results
+from gearwear.report.page import pictures
+from tests.report.fake import WORN, fake_arrays, fake_regions, fake_results
 
 
 @pytest.fixture(scope="module")
@@ -213,6 +215,19 @@ def test_a_play_that_is_the_same_all_round_does_not_lie_on_the_frame(axis):
     figures.backlash(axis, MeshingCurves(turn, np.zeros(100), np.full(100, 34.1), 34.1 + 1e-13 * np.sin(7.0 * turn)))
     low, high = axis.get_ylim()
     assert low < 0.0 and high > 0.0341 + 0.04 * (high - low)
+
+
+def test_the_legend_of_a_section_stands_below_its_words(monkeypatch, arrays):
+    """Under the flat tooth of a ring, which is drawn low, it lay on them."""
+    across = np.linspace(-4.0, 4.0, 60)
+    for high in (2.0, 5.0, 9.0):
+        outline = np.column_stack([across, arrays.gear.reference_radius - 0.5 * high + high * np.cos(across / 3.0)])
+        monkeypatch.setattr(pictures, "section", lambda *given, outline=outline: (outline, outline))
+        with rc_context(figures.STYLE):
+            page = pictures.worst_sections(fake_regions(), arrays).draw()
+            FigureCanvasAgg(page).draw()
+        for each in page.axes:
+            assert each.get_legend().get_window_extent().y1 < each.xaxis.label.get_window_extent().y0
 
 
 @pytest.fixture(scope="module")

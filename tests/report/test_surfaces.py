@@ -5,11 +5,15 @@ from __future__ import annotations
 import base64
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from gearwear.design.gear import Gear
 from gearwear.design.side import Side
+from gearwear.design.spec import GearSpec
+from gearwear.design.surface import flank_points
 from gearwear.report.figures.colours import ColourScale
 from gearwear.report.figures.scene import eye_direction, scene, still, tooth_labels
 from gearwear.report.figures.surfaces import FLANK_VERTICES, gear_surfaces, worn_volume
@@ -157,6 +161,19 @@ def test_the_worst_flank_faces_the_viewer(arrays):
         angle = (tooth - 1) * arrays.gear.pitch_angle
         outward = side * np.array([-np.sin(angle), np.cos(angle), 0.0])
         assert eye_direction([region], arrays.gear) @ outward > 0.5
+
+
+@pytest.mark.parametrize("internal", [False, True])
+@pytest.mark.parametrize(("tooth", "side"), [(0, Side.LEFT), (10, Side.RIGHT), (30, Side.LEFT)])
+def test_the_flank_that_lost_most_faces_the_viewer_in_a_ring_too(internal, tooth, side):
+    """By its own normal; the flanks of a ring were looked at from behind, and its deepest wear was not in the first view."""
+    outside = {"internal": True, "rim_diameter": 144.0, "addendum": 0.8} if internal else {}
+    gear = Gear.from_spec(GearSpec("gear", 48, 2.5, 15.0, **outside))
+    middle = np.array([0.5 * (gear.form_roll + gear.tip_roll)])
+    normal = flank_points(gear, np.array([tooth]), np.array([int(side)]), middle, np.array([7.5])).normal[0]
+    eye = eye_direction([SimpleNamespace(tooth=tooth, side=side)], gear)
+    radial = np.array([np.cos(tooth * gear.pitch_angle), np.sin(tooth * gear.pitch_angle), 0.0])
+    assert eye @ normal > 0.4 and (eye @ radial < 0.0) == internal and eye[2] > 0.5
 
 
 def test_the_still_picture_is_no_blank(arrays, worn):

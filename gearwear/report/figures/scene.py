@@ -29,9 +29,9 @@ FINEST_UM, UNKNOWN = 0.1, -32768
 
 
 def eye_direction(regions: Sequence[WearRegion], gear: Gear) -> Floats:
-    """(3,) unit vector from the gear to the viewer: the flank that lost most is seen, from outside and a little above."""
+    """(3,) unit vector from the gear to the viewer: the flank that lost most is seen, from outside, that of a ring across it, and a little above."""
     tooth, side = (regions[0].tooth, regions[0].side) if regions else (0, Side.LEFT)
-    azimuth = tooth * gear.pitch_angle + side * AZIMUTH_OFF
+    azimuth = tooth * gear.pitch_angle + side * (math.pi - AZIMUTH_OFF if gear.spec.internal else AZIMUTH_OFF)
     return np.array([math.cos(azimuth) * math.cos(ELEVATION), math.sin(azimuth) * math.cos(ELEVATION), math.sin(ELEVATION)])
 
 

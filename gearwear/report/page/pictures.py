@@ -109,7 +109,8 @@ def worst_sections(regions: Sequence[WearRegion], arrays: ReportArrays) -> Pictu
             factor = figures.magnification(nominal, worn)
             figures.tooth_section(axis, nominal, worn, arrays.gear.reference_radius, factor)
             axis.set_title(f"tooth {tooth}, z = {number(z, 1)} mm" + (f", loss × {factor:g}" if factor > 1.0 else ", true scale"))
-            axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
+            # Below the words of the axis, which are as far under a wide tooth, drawn low, as under a slender one.
+            axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, borderaxespad=4.5)
             if axis is not axes[0]:
                 axis.set_ylabel("")
         return figure
