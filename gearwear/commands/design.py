@@ -279,7 +279,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     header += _remains(candidates.gauges, best.proposal)
     header += _told(best.proposal, seen)
     header += ["Left on the scan, fitted to it (median and scatter of the deviations):"]
-    header += [f"  {surface.surface:<40}{1e3 * surface.median:>+9.1f} ± {1e3 * surface.scatter:.1f} µm" for surface in best.left]
+    header += [f"  {surface.surface:<40}{1e3 * surface.median:>+z9.1f} ± {1e3 * surface.scatter:.1f} µm" for surface in best.left]
     header += _tips(best.gear, 2.0 * seen.tip_radius, best.left)
     header += _others(best.proposal, [candidate.proposal for candidate in candidates.ranked[1:]])
     header += _doubts(seen, best)

@@ -11,6 +11,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from gearwear.design import Gear, GearSpec
+from gearwear.design.side import Side
+from gearwear.errors import InputError
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.path import sliding
 from gearwear.report import figures
@@ -18,6 +20,7 @@ from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import DIVERGING, ColourScale, colour_scale
 from gearwear.report.figures.surfaces import section, whole_outline
 from gearwear.report.page import pictures
+from gearwear.wear_law.study import WearStudy
 from tests.report.fake import WORN, fake_arrays, fake_regions, fake_results
 
 
@@ -215,6 +218,17 @@ def test_a_play_that_is_the_same_all_round_does_not_lie_on_the_frame(axis):
     figures.backlash(axis, MeshingCurves(turn, np.zeros(100), np.full(100, 34.1), 34.1 + 1e-13 * np.sin(7.0 * turn)))
     low, high = axis.get_ylim()
     assert low < 0.0 and high > 0.0341 + 0.04 * (high - low)
+
+
+def test_what_there_is_nothing_to_draw_of_is_told(axis):
+    """A gear compared without the loop, and a law that no wear gave, ended in an AttributeError and a plain ValueError."""
+    law = WearStudy(Side.RIGHT, (), (), (), "wear on 2 teeth of one side")
+    with pytest.raises(InputError, match=r"loop of type NoneType: that of a gear whose effects were looked for \(loop=True"):
+        figures.waterfall(axis, None)
+    with pytest.raises(InputError, match="nothing to draw: wear on 2 teeth of one side"):
+        figures.worn_profile(axis, law)
+    with pytest.raises(InputError, match=r"no forecast; one of ahead=gw.Ahead\(cycles_run, cycles\)"):
+        figures.greatest_depth(axis, law)
 
 
 def test_the_legend_of_a_section_stands_below_its_words(monkeypatch, arrays):

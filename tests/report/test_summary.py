@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import os
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from gearwear.commands import progress
 from gearwear.comparison.notes import worn_notes
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
+from gearwear.design.spec import GearSpec
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report.words.terminal import ASCII, lines, print_summary, written
 from gearwear.report.words.verdict import doubts, key_figures, loop_words, subject, verdict
@@ -200,6 +202,15 @@ def test_the_module_is_that_of_the_drawing():
     spec = replace(fake_results().gear.spec, normal_module=3.175)
     head = subject("pinion", replace(fake_results().gear, spec=spec), fake_results().measured.scans).replace("\u202f", " ")
     assert "m = 3.175 mm, α = 20.0°" in head
+
+
+def test_the_head_of_a_double_helical_gear_keeps_its_file_and_its_points():
+    """It read "right and left · d…z, 35 323 po…"."""
+    gear = Gear.from_spec(GearSpec("gear", 22, 2.0, 30.0, helix_angle=math.radians(25.0), gap=5.0))
+    scan = replace(fake_results().measured.scans[0], files=("in/dh.xyz",))
+    head = subject("gear", gear, [scan], 80)
+    assert "z=22, m=2.00" in head and " · dh.xyz, " in head and head.endswith(" points") and len(head) <= 80
+    assert subject("gear", gear, [scan]).startswith("gear, z = 22, m = 2.00")
 
 
 def test_what_the_effects_would_have_cost_is_one_line():

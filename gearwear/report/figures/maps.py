@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
+from gearwear.errors import check_kind
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import ALARM, BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
 from gearwear.report.figures.legend import legend_above
@@ -164,6 +165,7 @@ def waterfall(axis: Axes, loop: Loop) -> Axes:
     -------
     Axes
     """
+    check_kind(loop, Loop, "loop", "that of a gear whose effects were looked for (loop=True, gw.find_effects)")
     effects = [effect for effect in loop.effects if effect.kind is not Kind.WEAR]
     bars = [("after registration", 0.0, 1e3 * loop.rms_before, 1e3 * loop.held_out_before, MUTED)]
     for effect in effects:

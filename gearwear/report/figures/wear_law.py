@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.design.quantity import NORMAL_95
+from gearwear.errors import InputError
 from gearwear.report.figures.colours import ALARM, BLUE, MUTED, ORANGE
 from gearwear.report.figures.legend import legend_above
 from gearwear.wear_law.across import AcrossFace
@@ -20,7 +21,7 @@ def worn_profile(axis: Axes, law: WearStudy) -> Axes:
     """Mean depth of the worn flanks along the profile, and the law fitted to it; metal is lost downwards."""
     fit, path, (roll, depth) = law.best, law.path, law.over_path
     if fit is None or path is None:
-        raise ValueError(f"nothing to draw: {law.why_not}")
+        raise InputError(f"nothing to draw: {law.why_not}")
     axis.axhline(0.0, color=MUTED, ls=(0, (5, 2)), lw=1.0)
     error = 1e3 * NORMAL_95 * fit.std
     axis.errorbar(fit.roll, 1e3 * fit.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, mean flank")
@@ -38,7 +39,7 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
     """Greatest depth of the mean flank against cycles with its band, and limits with the cycles that reach them."""
     forecast = law.forecast
     if forecast is None:
-        raise ValueError("nothing to draw: no forecast")
+        raise InputError("nothing to draw: no forecast; one of ahead=gw.Ahead(cycles_run, cycles) would be right")
     size, name = next((scale for scale in ((1e6, "millions"), (1e3, "thousands")) if forecast.cycles[-1] >= scale[0]), (1.0, ""))
     cycles = forecast.cycles / size
     value, low, high = (1e3 * getattr(forecast.greatest_depth, part) for part in ("value", "low", "high"))

@@ -400,8 +400,8 @@ def known(value: float, std: float, digits: int, unit: str = "", least: float = 
 
 
 def subject(part: str, gear: Gear, scans: Sequence[Scan], room: int | None = None) -> str:
-    """What was measured: the gear and the scan, on one line; where there is `room` for so many letters only, the file's name loses its
-    middle, and no number does."""
+    """What was measured: the gear and the scan, on one line; where there is `room` for so many letters only, blanks go, and then the
+    middle of the file's name, but no number."""
     facts = [
         f"{'internal, ' if gear.spec.internal else ''}z = {gear.teeth}",
         f"m = {as_drawn(gear.spec.normal_module)}{SPACE}mm",
@@ -413,6 +413,8 @@ def subject(part: str, gear: Gear, scans: Sequence[Scan], room: int | None = Non
     points = sum(scan.read for scan in scans)
     name, more = Path(files[0]).name, f" and {len(files) - 1} more" if len(files) > 1 else ""
     before, after = f"{part}, {', '.join(facts)} · ", f"{more}, {number(points, 0)} points"
+    if room is not None and len(before) + len(name) + len(after) > room:
+        before = before.replace(" = ", "=")
     left = len(name) if room is None else max(room - len(before) - len(after), LEAST_NAME)
     if len(name) > left:
         end = (left - 1) // 2
