@@ -41,6 +41,8 @@ of a Dask scheduler. Needs the extra: pip install 'gearwear[batch]'."""
 
 SHOWN = 10
 """Lines on refused and failed scans at the end."""
+NEAR = 0.7
+"""How alike a further column's name is to that of one with a meaning from which on that is asked for (`difflib`)."""
 
 
 def parser() -> Parser:
@@ -197,9 +199,14 @@ def _without_result(rows: Sequence[Listed], store: Store) -> list[tuple[str, str
 
 
 def _further_columns(rows: Sequence[Listed]) -> list[tuple[str, str]]:
-    """Columns that mean nothing to the batch."""
+    """Columns that mean nothing to the batch; where one may be meant for one that does, which."""
+    from difflib import get_close_matches
+
     from gearwear.fleet.manifest import NEEDED, OPTIONAL
     from gearwear.fleet.words import wrapped
 
     names = dict.fromkeys(name for row in rows for name in row.cells if name not in (*NEEDED, *OPTIONAL, "key"))
-    return wrapped(f"Further columns, kept as they are: {', '.join(names)}", "dim", 2) if names else []
+    meant = {name: get_close_matches(name.lower(), OPTIONAL, 1, NEAR) for name in names}
+    said = ", ".join(f"{name} ({near[0]}?)" if near else name for name, near in meant.items())
+    style = "yellow" if any(meant.values()) else "dim"
+    return wrapped(f"Further columns, kept as they are: {said}", style, 2) if names else []

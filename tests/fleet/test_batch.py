@@ -206,6 +206,21 @@ def test_the_end_says_why_in_full_and_what_columns_mean_nothing_to_it(fleet):
     assert "Further columns, kept as they are: site\n" in said.out
 
 
+def test_a_column_that_may_be_meant_for_another_is_asked_for(tmp_path, monkeypatch):
+    """`unit` was kept as it is, and the scans of a list in inches were read in millimetres; so with `cycles` and the order of the trend."""
+    monkeypatch.setattr("gearwear.fleet.task.run", lambda job: Outcome(job.key, State.REFUSED, why="line"))
+    lines = (
+        sections(tmp_path, 0)
+        .read_text(encoding="utf-8")
+        .replace("site", "unit,Cycles,inspection,room")
+        .replace("hall 2", "in,5,May,hall 2")
+    )
+    (tmp_path / "fleet.csv").write_text(lines, encoding="utf-8")
+    said = command("batch", tmp_path / "fleet.csv", "--out", tmp_path / "store", "--workers", "0").out
+    assert "Further columns, kept as they are: unit (units?), Cycles (cycles_run?)," in said
+    assert "inspection (inspected?), room\n" in said
+
+
 def test_what_another_list_of_the_store_refused_is_not_told_of_this_one(tmp_path, monkeypatch):
     """A tally of "1 scan: 1 done, 0 refused" stood over the refusals of all lists, each "line 2"."""
     good = "gear_id,design,scans\nG0,design.toml,s0.xyz\n"
