@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.figure import Figure
 
 from tests.commands.doors import ONE, PAIR, Said, run, scan_file, strict_json
+from tests.diagnose.plain import plain_effects
 from tests.synthetic import Effect, Recipe, make_scan
 
 FILES = {
@@ -31,11 +36,28 @@ MADE = Recipe(
 ).of_size(40_000)
 
 
+@contextmanager
+def one_page_drawn() -> Iterator[None]:
+    """Pictures come out as they are, and of the PDF the first page: the others hold what the pictures show, and are counted."""
+    whole, pages = Figure.draw, list[Figure]()
+
+    def draw(figure: Figure, renderer: Any) -> None:
+        if not isinstance(renderer, RendererAgg):
+            pages.append(figure)
+        if len(pages) <= 1 or isinstance(renderer, RendererAgg):
+            whole(figure, renderer)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Figure, "draw", draw)
+        yield
+
+
 @pytest.fixture(scope="module")
 def inspected(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Said, dict[str, Any]]:
     folder = tmp_path_factory.mktemp("inspect")
     files, _ = scan_file(folder, "made", MADE, 8)
-    said = run("inspect", PAIR, *files, "--class", "9", "--topography", "1,5", "--out", folder / "out")
+    with plain_effects(), one_page_drawn():
+        said = run("inspect", PAIR, *files, "--class", "9", "--topography", "1,5", "--out", folder / "out")
     return folder / "out", said, strict_json(folder / "out" / "inspection.json")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from gearwear.design import Gear, read_design
 from gearwear.design.modification import FlankModification
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
+from tests.diagnose.plain import plain_effects
 from tests.synthetic import GearNumbers, Recipe, SlidingWear, Texture, make_scan
 from tests.synthetic.edges import bevelled, height_of
 from tests.synthetic.helical import Helical, scan
@@ -45,8 +47,10 @@ def unworn(folder):
     return written(folder, "unworn", 1)[0]
 
 
-def test_it_is_found_and_no_wear_nor_any_effect(folder, unworn):
-    results = compare(read_design(folder / "design.toml"), [unworn], inspection=False)
+@pytest.mark.parametrize("effects", [plain_effects, pytest.param(nullcontext, marks=pytest.mark.long)], ids=["plain", "all"])
+def test_it_is_found_and_no_wear_nor_any_effect(folder, unworn, effects):
+    with effects():
+        results = compare(read_design(folder / "design.toml"), [unworn], inspection=False)
     assert results.wear.regions == () and results.effects == ()
     edge = results.measured.tip_edge
     assert edge.height == pytest.approx(height_of(NUMBERS, FLANK), abs=0.1)

@@ -30,7 +30,7 @@ SLOPE = 0.016
 @cache
 def compared(plain: bool = True):
     added = lambda side, roll, z: side * SLOPE * (z / GEAR.width - 0.5)  # noqa: E731
-    cloud = scan(GEAR, 60_000, noise=0.006, seed=5, wear=(PATCH,), added=added, coat=0.014)
+    cloud = scan(GEAR, 40_000, noise=0.006, seed=5, wear=(PATCH,), added=added, coat=0.014)
     design = Design({"gear": designed(GEAR)})
     with plain_effects() if plain else nullcontext():
         measured = gw.find_effects(gw.register(design, gw.as_scan(cloud.points)))

@@ -9,6 +9,7 @@ import pytest
 
 import gearwear as gw
 from gearwear.design.pair import Design
+from tests.diagnose.plain import plain_effects
 from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_helical import designed
 from tests.synthetic.tooth import Patch
@@ -20,7 +21,7 @@ NOISE = 0.005
 
 def broken(height: float, seen: bool = True):
     """A scan of which tooth 0 ends `height` mm above the root, in a wavy fracture."""
-    cloud, rng = scan(GEAR, 40_000, noise=NOISE, seed=7, wear=(WORN,)), np.random.default_rng(8)
+    cloud, rng = scan(GEAR, 25_000, noise=NOISE, seed=7, wear=(WORN,)), np.random.default_rng(8)
     points = (cloud.points - cloud.translation) @ cloud.rotation
     radius, angle = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
     points = points[(np.abs(angle) > np.pi / GEAR.teeth) | (radius < GEAR.root + height)]
@@ -36,7 +37,8 @@ def broken(height: float, seen: bool = True):
 
 @cache
 def found(height: float, seen: bool = True):
-    return gw.find_effects(gw.register(Design({"gear": designed(GEAR)}), gw.as_scan(broken(height, seen))), frozenset())
+    with plain_effects():
+        return gw.find_effects(gw.register(Design({"gear": designed(GEAR)}), gw.as_scan(broken(height, seen))), frozenset())
 
 
 @pytest.mark.parametrize("height", [pytest.param(0.7, marks=pytest.mark.long), 1.8])

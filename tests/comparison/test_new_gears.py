@@ -12,6 +12,7 @@ from gearwear.design.pair import Design
 from gearwear.diagnose.effects.base import Kind
 from gearwear.placing.edges import rounded_ends
 from gearwear.wear.edges import at_ends_only, end_strip
+from tests.diagnose.plain import plain_effects
 from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_helical import designed
 from tests.synthetic.tooth import Patch
@@ -74,7 +75,8 @@ def test_where_ends_are_rounded_is_seen():
 
 def test_a_nick_at_an_end_is_an_edge():
     nick = Patch(6, -1, 0.06, (5.0, 20.0), (-0.9, 0.9))
-    wear = gw.find_wear(measured(wear=(nick,)))
+    with plain_effects():
+        wear = gw.find_wear(measured(wear=(nick,)))
     assert not wear.regions and wear.edges == 1 and wear.edge_depth > 0.01
 
 

@@ -133,10 +133,12 @@ def test_a_flank_that_is_no_datum_has_the_form_of_its_side():
     np.testing.assert_allclose(made[EVERY_THIRD, 0], expected, atol=4e-4)  # 6 µm of crowning move it by 4
 
 
-@pytest.mark.parametrize("fillets_follow", [pytest.param(True, marks=pytest.mark.long), False])
-def test_few_worn_flanks_beside_a_form_of_all(fillets_follow):
+@pytest.mark.parametrize(
+    ("fillets_follow", "seeds"), [(False, [0]), *(pytest.param(one, range(3), marks=pytest.mark.long) for one in (True, False))]
+)
+def test_few_worn_flanks_beside_a_form_of_all(fillets_follow, seeds):
     """Their volume, together and each, within two and three standard deviations, and the index of their teeth as well known as is said."""
-    for seed in range(3):
+    for seed in seeds:
         cells, loop, index, true = formed(seed, fillets_follow)
         wear = find_wear(cells.with_deviation(cells.points.deviation - as_made(cells, loop)), loop.noise, loop=loop)
         assert {(region.tooth, region.side) for region in wear.regions} == {(tooth, LEFT) for tooth in EVERY_THIRD}

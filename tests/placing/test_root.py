@@ -21,7 +21,7 @@ WHEEL = GearNumbers(teeth=24, module=4.0, face_width=12.0, rack_tip_radius=0.38)
 
 
 def scanned(*effects: Effect):
-    return as_scan(make_scan(Recipe(gear=WHEEL, effects=effects, noise_um=8.0).of_size(40_000), 3).views[0])
+    return as_scan(make_scan(Recipe(gear=WHEEL, effects=effects, noise_um=8.0).of_size(25_000), 3).views[0])
 
 
 def laid_on(drawn: GearNumbers, scan):

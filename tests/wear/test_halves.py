@@ -30,7 +30,7 @@ NOISE = 0.003
 def unworn(gear: Helical | Double) -> Wear:
     """What is found on a gear without wear, without the loop."""
     make, design = (double_scan, designed_double) if isinstance(gear, Double) else (scan, designed)
-    return gw.find_wear(gw.register(Design({"gear": design(gear)}), gw.as_scan(make(gear, 30_000, noise=0.005, seed=3).points)))
+    return gw.find_wear(gw.register(Design({"gear": design(gear)}), gw.as_scan(make(gear, 20_000, noise=0.005, seed=3).points)))
 
 
 def test_as_little_shows_on_two_halves_as_on_one_face_as_wide():

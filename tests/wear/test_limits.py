@@ -17,6 +17,7 @@ from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import FALSE_ALARM, make_side_maps
 from gearwear.wear.limits import BEST_OF, BEST_STD, PATCH, common_loss, even_depth, even_part, faint_sides, upper_limit
 from gearwear.wear.regions import find_wear
+from tests.diagnose.plain import plain_effects
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
 
@@ -159,7 +160,8 @@ def test_a_loss_that_is_not_sure_is_in_the_range_with_what_its_doubt_leaves_open
 def test_faint_wear_of_a_whole_side_is_within_what_it_may_come_to():
     """Sliding wear put under flanks whose effects were found without it: what it may come to holds it and grows by what is added; without any, and
     where no cell is looked at, it is none."""
-    measured = find_effects(registered(SCAN.points, GEAR), frozenset())  # that no side looks worn is another test's question
+    with plain_effects():
+        measured = find_effects(registered(SCAN.points, GEAR), frozenset())  # that no side looks worn is another test's question
     cells, loop = measured.as_made, measured.loop
     assert loop is not None
     sheets = make_side_maps(cells)

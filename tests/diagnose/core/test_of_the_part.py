@@ -11,6 +11,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
 from gearwear.design.tolerance import GearTolerance, profile_form_tolerance
+from gearwear.diagnose.effects.axis_offset_lateral import EFFECT as LATERAL
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.of_the_part import left_in_the_part
@@ -23,7 +24,7 @@ from tests.synthetic import Effect, SlidingWear
 
 @pytest.fixture(scope="module")
 def unworn():
-    return binned((), points=14_000)
+    return binned((), points=10_000)
 
 
 def along(cells):
@@ -139,15 +140,16 @@ def test_a_side_is_worn_whatever_the_other_was_cut_to(form, effects):
 
 
 @pytest.mark.parametrize(
-    ("wear", "sides"),
+    ("wear", "sides", "effects"),
     [
-        pytest.param((), NO_SIDE, marks=pytest.mark.long, id="both sound"),
-        pytest.param((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),), LEFT, id="left worn"),
+        pytest.param((), NO_SIDE, None, marks=pytest.mark.long, id="both sound"),
+        pytest.param((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),), LEFT, (*PLAIN, LATERAL), id="left worn"),
+        pytest.param((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"),), LEFT, None, marks=pytest.mark.long, id="of all"),
     ],
 )
-def test_a_laser_beside_the_axis_may_be_a_slope_of_the_sound_side_where_the_other_is_worn(wear, sides):
+def test_a_laser_beside_the_axis_may_be_a_slope_of_the_sound_side_where_the_other_is_worn(wear, sides, effects):
     """It turns flanks of both sides against each other, which no slope does; those of one side alone it turns as a slope and another level of theirs."""
-    loop = explained(binned(wear, (Effect("axis_offset_lateral", {"offset_um": 60.0}),)))
+    loop = explained(binned(wear, (Effect("axis_offset_lateral", {"offset_um": 60.0}),)), effects)
     (effect,) = loop.effects
     assert (loop.worn_sides, effect.name) == (sides, "axis_offset_lateral")
     assert ("profile_slope" in effect.alternatives) == bool(sides)
