@@ -238,6 +238,7 @@ def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> N
     wrong = []
     for gear in gears:
         try:
+            _teeth(arguments.topography, gear.teeth)
             half = _half(arguments, gear)
             _settings(arguments, gear if half is None else half_gear(gear, half), edition)
         except InputError as error:

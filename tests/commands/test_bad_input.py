@@ -250,6 +250,13 @@ def test_an_argument_that_cannot_be(place, tmp_path, monkeypatch, line, words):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_teeth_that_no_gear_of_the_design_has_are_refused_before_a_scan_is_read(place, tmp_path, monkeypatch):
+    monkeypatch.chdir(place)
+    monkeypatch.setattr("gearwear.comparison.closing.measure", lambda *asked: pytest.fail("the scan is read"))
+    refused(run("inspect", "one.toml", "good.ply", "--topography", "13", "--out", tmp_path / "out"), "teeth from 1 to 12")
+    refused(run("inspect", PAIR, "good.ply", "--topography", "25", "--out", tmp_path / "out"), "--topography 25")
+
+
 COMMANDS = ("compare one.toml good.ply", "inspect one.toml good.ply", "meshing", "models one.toml")
 
 
@@ -286,6 +293,7 @@ class TestOutput:
         refused(run("meshing", "--out", tmp_path), "No space left on device", "free space")
         assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("meshing.json", "old")]
 
+    @pytest.mark.usefixtures("blank_figures")
     def test_a_folder_where_a_file_should_go(self, place, tmp_path):
         (tmp_path / "meshing.png").mkdir()
         refused(run("meshing", "--out", tmp_path), "meshing.png is a folder there")
@@ -314,6 +322,7 @@ class TestProfiles:
         np.savez(tmp_path / "worn_profiles.npz", **arrays)
         return run("meshing", "--wear", tmp_path, "--out", tmp_path / "out", "--quiet")
 
+    @pytest.mark.usefixtures("blank_figures")
     @pytest.mark.parametrize("part", ["pinion", "gear"])
     def test_as_written_they_run(self, tmp_path, arrays, part):
         """Compared by itself, from a design with [gear] alone, the pinion is a "gear": teeth and circles say which of the pair it is."""
