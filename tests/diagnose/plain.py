@@ -26,8 +26,9 @@ PLAIN_AND_ALL = pytest.mark.parametrize(
 
 
 @contextmanager
-def plain_effects() -> Iterator[None]:
-    """In the body a loop that is told no effects searches these."""
+def plain_effects(*more: str) -> Iterator[None]:
+    """In the body a loop that is told no effects searches these, and `more` by name."""
+    searched = tuple(effect for effect in catalogue() if effect.name in {*(one.name for one in PLAIN), *more})
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("gearwear.diagnose.loop.catalogue", lambda: PLAIN)
+        patch.setattr("gearwear.diagnose.loop.catalogue", lambda: searched)
         yield

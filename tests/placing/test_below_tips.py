@@ -1,5 +1,7 @@
 """Points that are taken off the surfaces stay where they lie: they are located again once the scan is known to be distorted."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
@@ -9,11 +11,14 @@ from gearwear.comparison.measured_gear import register
 from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK, OTHER, locate
 from gearwear.placing.low_tips import below_tips
+from tests.diagnose.plain import plain_effects
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Effect, GearNumbers, Recipe, Texture, make_scan
 
 SMALL = GearNumbers(21, 3.0, 14.5, bore_diameter=22.0)
 TOO_SMALL_PPM = -3281.0
+FORMS = ("scale", "scale_anisotropic", "tip_relief", "root_relief", "profile_shift", "tip_diameter")
+"""What a search beside the plain effects may take for one another here."""
 
 
 @pytest.fixture(scope="module")
@@ -36,10 +41,12 @@ def test_points_higher_than_the_tips_stay_where_they_lie(shrunk):
     assert np.isnan(off.deviation[taken]).all() and np.isnan(off.roll[taken]).all() and not off.side[taken].any()
 
 
-def test_a_scan_too_small_is_that_and_has_no_form(shrunk):
+@pytest.mark.parametrize("effects", [FORMS, pytest.param(None, marks=pytest.mark.long)], ids=["plain", "all"])
+def test_a_scan_too_small_is_that_and_has_no_form(shrunk, effects):
     """The lands next to the corners were laid on the drawn flanks, and the root fitted first to the fillets of a smaller gear: a relief, a crowning and another
     relief in place of the scale."""
-    loop = find_effects(register(Design({"gear": designed(SMALL)}), as_scan(shrunk.points)), frozenset()).loop
+    with plain_effects(*effects) if effects else nullcontext():
+        loop = find_effects(register(Design({"gear": designed(SMALL)}), as_scan(shrunk.points)), frozenset()).loop
     named = {effect.name: effect for effect in loop.effects}
     assert set(named) == {"scale", "pitch"}
     known = named["scale"].parameters["relative_ppm"]
