@@ -16,7 +16,7 @@ from gearwear.comparison.bore import filled_in
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
-from gearwear.design.spec import shown
+from gearwear.design.quantity import shown
 from gearwear.errors import InputError, NotThisGear, check_kind
 from gearwear.inspection.halves import Half, inspect_half
 from gearwear.inspection.inspection import Inspection

@@ -13,8 +13,8 @@ from gearwear.arrays import Bools, Floats
 from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.collecting import Cut
 from gearwear.comparison.laying import laid_on, unstated_root
+from gearwear.comparison.own_edges import on_its_ends, on_its_tips, on_tips_of
 from gearwear.comparison.own_root import no_datum, on_its_root
-from gearwear.comparison.own_tips import on_its_tips, on_tips_of
 from gearwear.comparison.passes import Streamed, first_pass
 from gearwear.comparison.placed_notes import VIEWS_MAY_LIE_APART, doubts_of, said_of_scale, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, clip_of, with_pits
@@ -30,6 +30,7 @@ from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.end_edge import EndEdge
 from gearwear.placing.layers import how_far_apart, layers_apart, said_of_layers
 from gearwear.placing.low_tips import below_tips
 from gearwear.placing.mark import SeenMark
@@ -100,6 +101,8 @@ class MeasuredGear(Card):
         The root that the scan shows, and the gear that has it.
     tip_edge : TipEdge
         The edges between flanks and tips that it shows; the gear of `root` has them.
+    end_edge : EndEdge
+        Those between flanks and the ends of the face.
     placed : PlacedScan
         Before the loop.
     context : Context
@@ -127,6 +130,7 @@ class MeasuredGear(Card):
     part: str
     root: Root
     tip_edge: TipEdge
+    end_edge: EndEdge
     placed: PlacedScan
     context: Context
     first: Cells
@@ -232,7 +236,8 @@ class MeasuredGear(Card):
             smoothing = (VIEWS_MAY_LIE_APART,)
         sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
         told = None if self.mark is None else self.mark.sentence
-        return (*sample, *smoothing, *filter(None, [self.tip_edge.words(), self.root.words(), told]), *self.design.datum.words)
+        edges = self.tip_edge.words(), self.end_edge.words()
+        return (*sample, *smoothing, *filter(None, [*edges, self.root.words(), told]), *self.design.datum.words)
 
     @property
     def points(self) -> int:
@@ -382,17 +387,18 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
             refuse(gear, "a planar section", Toothing.DOUBLE_HELICAL)
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans))
     if grid is None:
-        placed, edge = on_its_tips(placed, scans, drawn)
+        placed, tip = on_its_tips(placed, scans, drawn)
     else:
-        placed, edge = on_tips_of(grid.gear, placed, scans, drawn)
-    placed, root = on_its_root(placed, scans, edge.gear)
+        placed, tip = on_tips_of(grid.gear, placed, scans, drawn)
+    placed, end = on_its_ends(placed, scans, tip.gear)
+    placed, root = on_its_root(placed, scans, end.gear)
     motion, mark = tooth_1_of(design.datum, scans, placed, root.gear)
     if motion is not None:
         placed = _laid(placed, scans, root, motion)
     if design.datum.leaves_out:
         scans = without_ignored(scans, placed, root.gear, design.datum)
         placed = _laid(placed, scans, root, Pose.identity())
-    return replace(_in_cells(design, scans, name, placed, root, edge, grid), mark=mark)
+    return replace(_in_cells(design, scans, name, placed, root, (tip, end), grid), mark=mark)
 
 
 @on_one_thread
@@ -407,9 +413,8 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
         A symmetry of the gear, in the design frame.
     """
     placed = _laid(measured.placed, measured.scans, measured.root, motion)
-    again = _in_cells(
-        measured.design, measured.scans, measured.part, placed, measured.root, measured.tip_edge, measured.first.grid
-    )
+    edges = measured.tip_edge, measured.end_edge
+    again = _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, edges, measured.first.grid)
     return replace(again, mark=measured.mark)
 
 
@@ -423,7 +428,7 @@ def _in_cells(
     name: str,
     placed: PlacedScan,
     root: Root,
-    tip_edge: TipEdge,
+    edges: tuple[TipEdge, EndEdge],
     grid: CellGrid | None,
 ) -> MeasuredGear:
     """A placed scan without what is broken off, in cells."""
@@ -464,7 +469,7 @@ def _in_cells(
     context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent, views_apart=apart)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
-        design=design, scans=scans, part=name, root=root, tip_edge=tip_edge, placed=placed, context=context, first=first, loop=None, final=final,
+        design=design, scans=scans, part=name, root=root, tip_edge=edges[0], end_edge=edges[1], placed=placed, context=context, first=first, loop=None, final=final,
         broken=broken, fracture_points=int(border.sum()) if streamed is None else streamed.fracture_points, streamed=streamed,
     )  # fmt: skip
 

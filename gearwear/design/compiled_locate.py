@@ -73,7 +73,7 @@ def constants_of(gear: Gear, bands: Bands) -> Constants:
     start_radius, start_scale, start = _start(gear, kind == RACK)
     limits = (bands.flank, bands.flank, bands.root, bands.tip, bands.end_low, bands.end_high, bands.bore, (0.0, 0.0))
     least, most = np.array(limits, dtype=np.float64).T.tolist()
-    edge, groove, sharp = float(gear.spec.end_edge), gear.spec.gap > 0.0, gear.flank_end_radius == gear.tip_radius
+    groove, sharp = gear.spec.gap > 0.0, gear.flank_end_radius == gear.tip_radius
     return Constants(
         teeth=gear.teeth,
         orientation=float(gear.orientation),
@@ -100,7 +100,7 @@ def constants_of(gear: Gear, bands: Bands) -> Constants:
         high_start=float(high.low),
         upper_from=0.5 * float(gear.face_width) if groove else math.inf,
         near=float(bands.inner_face(gear)),
-        margin=float(edge + bands.end_high[1]) if edge > 0.0 else -math.inf,
+        margins=bands.end_margins(gear),
         kind=kind,
         root=root,
         fillet_end=float(gear.fillet_end),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from numbers import Integral, Real
 
-from gearwear.design.spec import shown
+from gearwear.design.quantity import shown
 from gearwear.errors import InputError
 
 

@@ -80,7 +80,7 @@ class Constants(NamedTuple):
     high_start: float
     upper_from: float
     near: float
-    margin: float
+    margins: tuple[tuple[float, float], tuple[float, float]]
     kind: int
     root: tuple[float, float, float, float, float, float]
     fillet_end: float
@@ -328,8 +328,10 @@ def on_others(c, b):
         is_ = END_HIGH if at_high else (END_LOW if at_low else is_)
         inside = min(z - c.low_end, c.high_start - z)  # of the groove of a double helical gear
         in_groove = ((inside > 0.0) | ((inside >= outline) & (inside >= c.near))) & (is_ != BORE)
-        of_outline = (outline > -c.margin) | ((is_ != END_LOW) & (is_ != END_HIGH) & (is_ != BORE))
-        at_edge = of_outline & ((z < c.margin) | (z > w - c.margin))
+        left = b[OFF + i] > 0.0
+        low, high = c.margins[0][0] if left else c.margins[0][1], c.margins[1][0] if left else c.margins[1][1]
+        of_outline = (is_ != END_LOW) & (is_ != END_HIGH) & (is_ != BORE)
+        at_edge = ((of_outline | (outline > -low)) & (z < low)) | ((of_outline | (outline > -high)) & (z > w - high))
         d = z - w if at_high else (-z if at_low else outline)
         low = c.least[BORE] if at_bore else (c.least[TIP] if at_tip else (c.least[ROOT] if at_root else c.least[FLANK]))
         high = c.most[BORE] if at_bore else (c.most[TIP] if at_tip else (c.most[ROOT] if at_root else c.most[FLANK]))

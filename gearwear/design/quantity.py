@@ -93,6 +93,15 @@ def as_given(value: float) -> str:
     return f"{value:.12g}"
 
 
+def shown(value: object) -> str:
+    """`value` as a message shows it: on one line, and short."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python does not print integers of more than 4300 digits
+        return "a number of thousands of digits"
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
 def significant(value: object, digits: int = 3) -> str:
     """A number to so many significant digits, never in powers of ten above 1e-4.
 

@@ -14,7 +14,7 @@ from enum import StrEnum
 from numbers import Integral
 
 from gearwear.design.modification import AS_GENERATED, FlankModification
-from gearwear.design.quantity import as_given
+from gearwear.design.quantity import as_given, shown
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
@@ -102,6 +102,8 @@ class GearSpec:
         q, what grinding takes off a flank along its normal, mm; less than the protuberance. What the rack leaves in the root stays.
     protuberance_angle : float or None
         α_pr of the protuberance's own straight part, rad; None: not stated, the tip is round up to the flank.
+    ends_seen : ((float, float), (float, float)) or None
+        How far a scan shows edges to reach from the low and from the high end, mm, on left and on right flanks; None: as they are drawn.
 
     Raises
     ------
@@ -140,6 +142,7 @@ class GearSpec:
     tip_chamfer_land: float | None = None
     modified_between: tuple[float, float] | None = None
     thinning_measured: bool = False
+    ends_seen: tuple[tuple[float, float], tuple[float, float]] | None = None
 
     def __post_init__(self) -> None:
         try:
@@ -246,8 +249,14 @@ class GearSpec:
 
     @property
     def end_edge(self) -> float:
-        """How far chamfers or roundings of the ends reach from them, mm."""
-        return max(self.end_chamfer, self.end_rounding)
+        """How far chamfers or roundings of the ends reach from them at most, mm."""
+        return max(map(max, self.end_edges))
+
+    @property
+    def end_edges(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """How far they reach from the low and from the high end, mm, on left and on right flanks and what is next to these."""
+        drawn = max(self.end_chamfer, self.end_rounding)
+        return ((drawn, drawn), (drawn, drawn)) if self.ends_seen is None else self.ends_seen
 
     @property
     def hand(self) -> str:
@@ -518,15 +527,6 @@ class DatumSpec:
                 f"{1e6 * (self.scale - 1.0):+z.0f} ppm".replace("-", "−")
             )
         return tuple(said)
-
-
-def shown(value: object) -> str:
-    """`value` as a message shows it: on one line, and short."""
-    try:
-        text = repr(value)
-    except ValueError:  # Python does not print integers of more than 4300 digits
-        return "a number of thousands of digits"
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def check_teeth(section: str, teeth: int) -> None:

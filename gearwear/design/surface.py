@@ -6,6 +6,7 @@ points; the exact plumb line, no triangles, no search) and `flank_points` (from 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
@@ -151,6 +152,16 @@ class Bands:
         """Least deviation (mm) from the faces that end the halves of a double helical gear in the groove: that from the lower end, where it was seen."""
         return self.end_low[0] if np.isfinite(self.end_low[0]) else Bands.wide(gear).end_low[0]
 
+    def end_margins(self, gear: Gear) -> tuple[tuple[float, float], tuple[float, float]]:
+        """So near to the low and to the high end a point lies on an edge of it, mm, on left and on right flanks; −∞ where there is none.
+
+        The ends of a gear may lie off those drawn, and its edges with them; edges that were seen are where they are.
+        """
+        off = 0.0 if gear.spec.ends_seen is not None else min(self.end_high[1], Bands.wide(gear).end_high[1])
+        (a, b), (c, d) = gear.spec.end_edges
+        a, b, c, d = (edge + off if edge > 0.0 else -math.inf for edge in (a, b, c, d))
+        return (a, b), (c, d)
+
 
 def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int | None = None) -> SurfacePoints:
     """Locate measured points on the design and measure each one's normal deviation.
@@ -293,7 +304,7 @@ def _locate_chunk(gear: Gear, bands: Bands, table: tuple[Floats, Floats], points
     x, y, z = np.ascontiguousarray(points.T)
     seen = _InSection.of(gear, x, y, z)
     found = _outline(gear, bands, table, seen, z)
-    _end_there(gear, bands, z, found)
+    _end_there(gear, bands, seen.side, z, found)
     surface, deviation = found.surface, found.deviation
     least = np.array(
         [bands.flank[0]] * 2 + [bands.root[0], bands.tip[0], bands.end_low[0], bands.end_high[0], bands.bore[0], 0.0]
@@ -366,7 +377,7 @@ def _tooth_sides(gear: Gear, bands: Bands, table: tuple[Floats, Floats], seen: _
     return found, ~outer & ~below
 
 
-def _end_there(gear: Gear, bands: Bands, z: Floats, found: _Outermost) -> None:
+def _end_there(gear: Gear, bands: Bands, side: Floats, z: Floats, found: _Outermost) -> None:
     """The ends of the face, and what lies in the groove of a double helical gear or on an edge of the ends."""
     b, outline = gear.face_width, found.deviation.copy()
     for code, gap, limit, up in ((END_LOW, -z, bands.end_low, -1.0), (END_HIGH, z - b, bands.end_high, 1.0)):
@@ -376,12 +387,12 @@ def _end_there(gear: Gear, bands: Bands, z: Floats, found: _Outermost) -> None:
     surface = found.surface
     if gear.spec.gap > 0.0:
         surface[_in_groove(gear, z, outline, bands) & (surface != BORE)] = OTHER
-    edge = gear.spec.end_edge
-    if edge > 0.0:
-        margin = edge + bands.end_high[1]
+    if gear.spec.end_edge > 0.0:
         # Deep points of the outline too: of all that lie there these alone would be left, strays for the most part.
-        of_outline = (outline > -margin) | ~np.isin(surface, (END_LOW, END_HIGH, BORE))
-        surface[of_outline & ((z < margin) | (z > b - margin))] = OTHER
+        of_outline = ~np.isin(surface, (END_LOW, END_HIGH, BORE))
+        low, high = (np.where(side > 0.0, *end) for end in bands.end_margins(gear))
+        surface[(of_outline | (outline > -low)) & (z < low)] = OTHER
+        surface[(of_outline | (outline > -high)) & (z > b - high)] = OTHER
 
 
 def _in_groove(gear: Gear, z: Floats, outline: Floats, bands: Bands) -> Bools:

@@ -18,7 +18,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from gearwear.design.involute import involute_function
-from gearwear.design.spec import FEWEST_TEETH, MOST_TEETH, GearSpec, shown
+from gearwear.design.quantity import shown
+from gearwear.design.spec import FEWEST_TEETH, MOST_TEETH, GearSpec
 from gearwear.design.standards import ANGLES, DEPTHS, RING_DEPTHS, Depth, Module, modules_near
 from gearwear.errors import InputError
 from gearwear.identify.gauges import SPUR, Gauge, Helix

@@ -145,7 +145,7 @@ def helix_range(gear: Gear, between: tuple[float, float] | None = None, cutoff: 
     >>> round(r.length, 6), round(r.cutoff, 3)
     (13.5, 0.45)
     """
-    width = gear.face_width - 2.0 * gear.spec.end_edge
-    less = gear.spec.end_edge + min(0.05 * width, gear.normal_module)
-    start, end = between or (less, gear.face_width - less)
+    low, high = map(max, gear.spec.end_edges)
+    less = min(0.05 * (gear.face_width - (low + high)), gear.normal_module)
+    start, end = between or (low + less, gear.face_width - (high + less))
     return Range(start, end, end, cutoff or max(LEAST_CUTOFF, (end - start) / 30.0))

@@ -17,9 +17,8 @@ from gearwear.arrays import Floats
 from gearwear.design.given import check_choice, check_number, check_whole
 from gearwear.design.pair import CENTRE_ROUNDING
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.quantity import as_given, at_least, at_most
+from gearwear.design.quantity import as_given, at_least, at_most, shown
 from gearwear.design.side import Side
-from gearwear.design.spec import shown
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError, check_kind
 from gearwear.meshing.backlash import check_mesh, transverse_backlash

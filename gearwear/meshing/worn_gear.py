@@ -17,9 +17,8 @@ from gearwear.design.gear import Gear
 from gearwear.design.given import check_number
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.quantity import as_given, at_most, teeth_words
+from gearwear.design.quantity import as_given, at_most, shown, teeth_words
 from gearwear.design.side import Side
-from gearwear.design.spec import shown
 from gearwear.errors import InputError
 from gearwear.meshing.slices import on_face_of
 

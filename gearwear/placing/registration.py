@@ -364,10 +364,10 @@ def _motion_without(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floa
 
 
 def _centred(located: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
-    """`pose` with the middle of what was seen at mid-face."""
-    seen = located.position[located.surface != OTHER, 2]
-    low, high = np.quantile(seen, [0.002, 0.998]) if len(seen) else (0.0, gear.face_width)
-    return along_screw(pose, gear, 0.5 * float(gear.face_width - low - high))
+    """`pose` with the middle of what was seen at mid-face, or where it is between the edges of the ends."""
+    seen, (low_edge, high_edge) = located.position[located.surface != OTHER, 2], map(min, gear.spec.end_edges)
+    low, high = np.quantile(seen, [0.002, 0.998]) if len(seen) else (low_edge, gear.face_width - high_edge)
+    return along_screw(pose, gear, 0.5 * float(gear.face_width - (low - low_edge) - (high + high_edge)))
 
 
 def stray_limit(located: SurfacePoints) -> float:

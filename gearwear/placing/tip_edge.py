@@ -40,7 +40,7 @@ BESIDE = 8
 DEPARTED = 0.005
 """How far below the flank, mm, an edge has begun."""
 BEFORE = 1
-"""Bins by which the land is taken to end before."""
+"""Bins by which the land, and flanks next to edges of the ends, are taken to end before."""
 AS_DRAWN = 0.04
 """Height, in modules, by which an edge that is drawn may begin earlier than drawn and still be that: two bins."""
 MOST_SHARE = 0.75
@@ -110,7 +110,7 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
     first = top + max(OFF_LAND * m, OFF_LAND_STDS * noise)
     reach = min(REACH * m, REACH * way * (gear.tip_radius - gear.form_radius))
     edges = np.asarray(first + STEP * m * np.arange(int((top + reach - first) / (STEP * m)) + 1), dtype=np.float64)
-    profiles = [_medians(height[on], flank.deviation[on], edges) for on in (flank.side > 0, flank.side < 0)]
+    profiles = [medians(height[on], flank.deviation[on], edges) for on in (flank.side > 0, flank.side < 0)]
     fall = np.min([(one[OVER:] - one[:-OVER]) / (OVER * STEP * m) for one in profiles], axis=0)  # from the tip down
     steep = np.flatnonzero(~(fall > STEEPEST_FLANK))
     count = int(steep[0]) if len(steep) else 0
@@ -118,7 +118,7 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
         return TipEdge(gear)
     last = count + OVER - 1
     depth = float(min(one[last] - one[0] for one in profiles))
-    begins = float(edges[max(_departs(one, last) for one in profiles) + 1])
+    begins = float(edges[max(departs(one, last) for one in profiles) + 1])
     known = way * (gear.tip_radius - gear.flank_end_radius)
     if depth < LEAST_DEPTH or begins <= known + AS_DRAWN * m or not _of_all(flank, height, first, begins, depth):
         return TipEdge(gear)
@@ -152,7 +152,7 @@ def _land(points: Floats, gear: Gear, top: float) -> float | None:
     angle = np.remainder(section_angle(gear, *points.T) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
     edges = np.asarray(STEP * m * np.arange(int(half / (STEP * m)) + 1), dtype=np.float64)
     on = height < top + REACH * m
-    profile = _medians(gear.tip_radius * np.abs(angle[on]), -height[on], edges)
+    profile = medians(gear.tip_radius * np.abs(angle[on]), -height[on], edges)
     middle = float(np.nanmedian(profile[: max(len(profile) // 4, 1)])) if np.isfinite(profile).any() else math.nan
     low = np.flatnonzero(profile < middle - DEPARTED)
     return float(edges[low[0]]) if math.isfinite(middle) and len(low) and low[0] > BEFORE else None
@@ -166,7 +166,7 @@ def _on_sharp(points: Floats, gear: Gear) -> SurfacePoints:
     return found.take(found.surface == FLANK)
 
 
-def _medians(height: Floats, deviation: Floats, edges: Floats) -> Floats:
+def medians(height: Floats, deviation: Floats, edges: Floats) -> Floats:
     """Median of the deviations bin by bin of height, nan where there are too few."""
     order = np.argsort(height, kind="stable")
     cuts = np.searchsorted(height[order], edges)
@@ -174,7 +174,7 @@ def _medians(height: Floats, deviation: Floats, edges: Floats) -> Floats:
     return np.array([np.median(part) if len(part) >= LEAST_IN_BIN else math.nan for part in parts])
 
 
-def _departs(profile: Floats, last: int) -> int:
+def departs(profile: Floats, last: int) -> int:
     """The bin furthest from the tip that lies below the line through those next to the steep ones, of which `last` is the furthest."""
     bins = np.arange(len(profile))
     beside = (bins > last) & (bins <= last + BESIDE) & np.isfinite(profile)

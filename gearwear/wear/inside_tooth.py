@@ -26,8 +26,9 @@ def depth_inside(points: Floats, gear: Gear) -> tuple[Ints, Floats, Floats]:
     depth = np.minimum(flank, ends)
     if gear.spec.end_edge > 0.0:
         outline = np.minimum(flank, -above_circle(gear, radius, gear.tip_radius))
-        from_face = np.minimum(points[:, 2], gear.face_width - points[:, 2])
-        depth = np.minimum(depth, math.sqrt(0.5) * (outline + from_face - gear.spec.end_edge))
+        low, high = map(max, gear.spec.end_edges)
+        from_edge = np.minimum(points[:, 2] - low, gear.face_width - points[:, 2] - high)
+        depth = np.minimum(depth, math.sqrt(0.5) * (outline + from_edge))
     depth = np.where(above_circle(gear, radius, gear.root_radius) > 0.0, depth, -1.0)
     return tooth, depth, within / half
 

@@ -1,4 +1,4 @@
-"""Chamfered tips that the drawing does not have: no wear, no effect, and no loss between two scans of one gear."""
+"""Chamfered tips and ends that the drawing does not have: no wear, no effect, and no loss between two scans of one gear."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from tests.diagnose.plain import plain_effects
 from tests.synthetic import GearNumbers, Recipe, SlidingWear, Texture, make_scan
-from tests.synthetic.edges import bevelled, height_of
+from tests.synthetic.edges import bevelled, bevelled_ends, height_of
 from tests.synthetic.helical import Helical, scan
 from tests.synthetic.outline import Outline
 from tests.synthetic.test_helical import designed
@@ -55,6 +55,39 @@ def test_it_is_found_and_no_wear_nor_any_effect(folder, unworn, effects):
     edge = results.measured.tip_edge
     assert edge.height == pytest.approx(height_of(NUMBERS, FLANK), abs=0.1)
     assert edge.words() in results.measured.notes
+
+
+def ends_bevelled(folder, size: float, *wear: SlidingWear):
+    """A scan with the ends of all of its teeth bevelled by `size`, mm."""
+    recipe = Recipe(gear=NUMBERS, jitter=1.0, noise_um=6.0, texture=Texture(2.0, 1.0), wear=wear, pose="none").of_size(40_000)
+    scan = make_scan(recipe, 7)
+    square = np.full((2, 2), size)
+    np.savetxt(folder / "ends.xyz", bevelled_ends(scan.points, NUMBERS, square, square), fmt="%.4f")
+    return folder / "ends.xyz", scan
+
+
+def test_bevelled_ends_are_no_wear_and_no_effect_and_take_nothing_off_the_thinnest(folder):
+    file, _ = ends_bevelled(folder, 0.5)
+    results = compare(read_design(folder / "design.toml"), [file], inspection=False)
+    assert results.wear.regions == () and results.effects == ()
+    edge = results.measured.end_edge
+    assert np.array(edge.reach) == pytest.approx(np.full((2, 2), 0.5), abs=0.12)
+    assert edge.words() in results.measured.notes
+    thinnest = results.wear.thickness.thinnest()
+    drawn = results.measured.gear.tooth_thickness
+    assert thinnest is not None and thinnest.low <= drawn + 0.001 and thinnest.high >= drawn - 0.02
+
+
+@pytest.mark.long
+def test_wear_of_a_side_is_that_between_bevelled_ends(folder):
+    file, scan = ends_bevelled(folder, 0.5, SLID)
+    results = compare(read_design(folder / "design.toml"), [file], inspection=False)
+    assert {region.side for region in results.wear.regions} == {Side.LEFT}
+    assert not any(effect.name in ("end_relief", "helix_crowning", "taper") for effect in results.effects)
+    # Even along the face: of the strips on the bevels all of it lies past the flank, or in the bevel's own metal.
+    most, least = scan.truth.volume_mm3, scan.truth.volume_mm3 * (1.0 - 2.0 * 0.5 / 20.0)
+    std = results.wear.found.volume_std
+    assert least - 2.0 * std < results.wear.volume < most + 2.0 * std and std < 0.1 * most
 
 
 @pytest.mark.long

@@ -28,7 +28,7 @@ EXACT = 1e-12
 """mm, as promised; rounding of lengths of 300 mm is 6e-14."""
 
 
-def gear(teeth: int, module: float, degrees: float = 0.0, **more: float) -> Gear:
+def gear(teeth: int, module: float, degrees: float = 0.0, **more: Any) -> Gear:
     return Gear.from_spec(GearSpec("gear", teeth, module, 8.0 * module, helix_angle=math.radians(degrees), **more))
 
 
@@ -44,6 +44,7 @@ HELICAL = {
     "left 35": gear(31, 3.0, -35.0, profile_shift=0.2, tip_chamfer=0.3),
     "left 20, undercut": gear(9, 4.0, -20.0, tip_rounding=0.3),
     "eighty teeth": gear(80, 1.5, 8.0, end_chamfer=0.5),
+    "edges seen": gear(25, 2.0, -15.0, ends_seen=((0.3, 0.8), (0.9, 0.0))),
     "double": gear(40, 2.0, 25.0, gap=4.0, bore_diameter=30.0),
     "protuberance": gear(33, 2.5, 12.0, protuberance=0.06, rack_tip_radius=0.3),
 }

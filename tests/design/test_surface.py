@@ -395,6 +395,14 @@ class TestChamfers:
             flank = flank_points(gear, np.arange(n), side, roll, np.full(n, abs(10.0 * end - height)))
             assert (locate(flank.position - 0.7 * flank.normal, gear, bands).surface == expected).all()
 
+    def test_far_from_the_ends_flanks_remain_where_no_end_was_seen(self):
+        """Bands of an end that takes no points are infinite; all points were of nothing."""
+        never = (np.inf, np.inf)
+        roll = np.linspace(self.gear.form_roll + 0.1, self.gear.tip_roll - 0.1, 9)
+        flank = flank_points(self.gear, np.arange(9), np.full(9, 1), roll, np.linspace(1.0, 9.0, 9))
+        found = locate(flank.position, self.gear, replace(Bands.wide(self.gear), end_low=never, end_high=never))
+        assert (found.surface == FLANK).all()
+
 
 def test_surface_points_are_picked_by_mask_and_by_index(pinion):
     p = flank_points(pinion, np.arange(6), np.array([1, -1] * 3), np.linspace(5.0, 20.0, 6), np.full(6, 3.0))

@@ -14,8 +14,9 @@ from typing import Any
 from gearwear.design.files.values import check_keys, exclusive, finite_number, number_or, quoted_word, unknown
 from gearwear.design.limits import LIMIT_KEYS, Limits
 from gearwear.design.load import LoadSpec
+from gearwear.design.quantity import shown
 from gearwear.design.report_details import ReportDetails
-from gearwear.design.spec import EXPANSION_PPM, Artefact, Baseline, DatumBand, DatumMark, DatumSpec, PairSpec, ScannerSpec, shown
+from gearwear.design.spec import EXPANSION_PPM, Artefact, Baseline, DatumBand, DatumMark, DatumSpec, PairSpec, ScannerSpec
 from gearwear.design.weighing import DENSITY, DENSITY_STD, WeighingSpec
 from gearwear.errors import InputError
 

@@ -41,8 +41,8 @@ from gearwear.design.limits import Limits
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
-from gearwear.design.quantity import as_given, outside
-from gearwear.design.spec import ADDENDUM, DEDENDUM, GearSpec, check_module, check_teeth, shown
+from gearwear.design.quantity import as_given, outside, shown
+from gearwear.design.spec import ADDENDUM, DEDENDUM, GearSpec, check_module, check_teeth
 from gearwear.design.standards import MM_PER_INCH
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, check_kind, readable
@@ -313,6 +313,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         if "protuberance_angle" in table
         else None,
         modified_between=None,
+        ends_seen=None,
         thinning_measured=_measured_thinning(part, table),
         **values,
     )

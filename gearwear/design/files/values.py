@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from typing import Any, TypeVar
 
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
-from gearwear.design.spec import shown
+from gearwear.design.quantity import shown
 from gearwear.errors import InputError
 
 MOST_LISTED = 20

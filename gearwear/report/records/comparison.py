@@ -21,6 +21,7 @@ from gearwear.diagnose.found import FoundEffect
 from gearwear.inspection.halves import Half
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.published import PublishedMeshing
+from gearwear.placing.end_edge import EndEdge, Places
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.placing.tip_edge import TipEdge
@@ -71,6 +72,7 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         "most_lost": _most_lost(results),
         "root": _root(results.measured.root),
         "tip_edge": _tip_edge(results.measured.tip_edge),
+        "end_edge": _end_edge(results.measured.end_edge),
         "broken": [
             {
                 "tooth": part.tooth + 1,
@@ -225,6 +227,18 @@ def _depth_limits(open_: OpenVolume, region: WearRegion) -> Json:
 def _tip_edge(edge: TipEdge) -> Json:
     """What was found of the edges between flanks and tips."""
     return {"fits_design": edge.fits_design, "height_mm": edge.height, "depth_um": 1e3 * edge.depth}
+
+
+def _end_edge(edge: EndEdge) -> Json:
+    """What was found of the edges at the ends of the face."""
+
+    def ends(places: Places, unit: float) -> Json:
+        return {
+            end: {str(side): unit * values[side.index] for side in Side}
+            for end, values in zip(("low", "high"), places, strict=True)
+        }
+
+    return {"fits_design": edge.fits_design, "reach_mm": ends(edge.reach, 1.0), "depth_um": ends(edge.depth, 1e3)}
 
 
 def _pose(registration: Registration) -> Json:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from gearwear.comparison.laying import laid_on, unstated_root
 from gearwear.design.gear import Gear
+from gearwear.placing.end_edge import EndEdge, fit_end_edge
 from gearwear.placing.tip_edge import TipEdge, fit_tip_edge
 from gearwear.placing.views import PlacedScan
 from gearwear.scan.types import Scan
@@ -45,3 +46,25 @@ def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gea
         return placed, TipEdge(gear)
     own = gear.recut(**edge)
     return laid_on(own, scans, unstated_root(own), placed), TipEdge(own, other.spec.tip_chamfer)
+
+
+def on_its_ends(placed: PlacedScan, scans: Sequence[Scan], gear: Gear) -> tuple[PlacedScan, EndEdge]:
+    """The scan on the design with the edges at the ends of the face that it shows; what they bent of the pose is out of it before they are told.
+
+    Parameters
+    ----------
+    placed : PlacedScan
+        On the gear with the edges of the tips that it shows.
+    scans : sequence of Scan
+        Views of one gear.
+    gear : Gear
+        That gear.
+    """
+    edge = fit_end_edge(placed.located, gear, placed.registration.noise)
+    if edge.fits_design:
+        return placed, edge
+    placed = laid_on(edge.gear, scans, unstated_root(gear), placed)
+    again = fit_end_edge(placed.located, gear, placed.registration.noise)
+    if again.fits_design:
+        return placed, edge
+    return laid_on(again.gear, scans, unstated_root(gear), placed), again
