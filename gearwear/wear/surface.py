@@ -10,6 +10,9 @@ With A = Q + BᵀWB the expected surface is A⁻¹ BᵀW y. Stiffness τ and ten
 
     −2 log likelihood = log|A| − log|Q| + yᵀWy − yᵀWB A⁻¹ BᵀWy,   log|Q| over what Q penalises: the cosines of both ways.
 
+Few cells leave open how stiff the surface is: then every τ and κ² of the search counts with its share of the likelihood, and that their surfaces
+differ is in what is not known.
+
 A volume is aᵀc. With u = A⁻¹ a it gives each cell's mean the weight W B u, through which the errors of the cells enter like those of every weighted
 sum. That the surface between the points, at steep edges and in holes, is not the expected one adds, independent of them, the variance
 
@@ -22,7 +25,7 @@ every draw finds another deepest place by chance, and where one place stands out
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -44,14 +47,45 @@ DRAWS, PLACES = 200, 2
 """Surfaces that are drawn, and places of a window to a cell."""
 BETWEEN = 1e-6
 """Cells by which the middle of a window may miss the border between two and still lie on it; numerical."""
-FEWEST_SEEN = 12
-"""Cells that must hold points for a side to say how stiff its surface is."""
+FEWEST_SEEN = 4
+"""Cells that must hold points for a side to have a surface."""
+FEW_SEEN = 20
+"""Cells below which they leave open how stiff it is; from there on the likeliest stiffness stands for all."""
+LEAST_SHARE = 0.01
+"""Likelihood, of that of the likeliest, below which a stiffness does not count."""
 
 _GRID = sorted(product(TENSION, map(float, STIFFNESS)), key=lambda at: (2.0 * at[1] + math.log10(at[0]), at))
 _DECADES = np.array([(decade, decade + math.log10(tension)) for tension, decade in _GRID])
 _SOFTER: Bools = np.asarray((_DECADES[:, None] < _DECADES + 1e-9).all(axis=2))
 """All tensions and stiffnesses, from soft to stiff; the decades of τ and of τ κ² of each; and (i, j) whether none of the i-th is more than those of
 the j-th."""
+
+
+@dataclass(frozen=True, slots=True)
+class _AsStiff:
+    """The surface that is expected of one stiffness.
+
+    Parameters
+    ----------
+    share : float
+        Of the likelihood of all stiffnesses that count.
+    stiffness, tension : float
+        τ, mm⁻², and κ².
+    factor : (bands, n) float
+        Cholesky factor of A, lower bands.
+    expected : (n,) float
+        c, from the level.
+    """
+
+    share: float
+    stiffness: float
+    tension: float
+    factor: Floats
+    expected: Floats
+
+    def solve(self, right: Floats) -> Floats:
+        """A⁻¹ times `right`, (n,) or (n, k)."""
+        return np.asarray(cho_solve_banded((self.factor, True), right, check_finite=False), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,12 +102,8 @@ class SideSurface:
         B of these cells.
     weight : (m,) float
         W, mm⁻².
-    stiffness, tension : float
-        τ, mm⁻², and κ².
-    factor : (bands, n) float
-        Cholesky factor of A, lower bands.
-    expected : (n,) float
-        c, from the level.
+    ways : tuple of _AsStiff
+        As stiff as it may be; shares add up to 1.
     level : float
         mm.
     """
@@ -82,10 +112,7 @@ class SideSurface:
     seen: Bools
     at: sparse.csr_array
     weight: Floats
-    stiffness: float
-    tension: float
-    factor: Floats
-    expected: Floats
+    ways: tuple[_AsStiff, ...]
     level: float
 
     @classmethod
@@ -131,36 +158,49 @@ class SideSurface:
             own = float(np.log(usual * 10.0**decade * eigenvalues * (tension + eigenvalues)).sum())
             return 2.0 * float(np.log(triangle[0]).sum()) - own, float(half @ half)
 
-        tension, decade = likeliest(freedom_and_fit)
-        stiffness = usual * 10.0**decade
+        likely = {likeliest(freedom_and_fit): 1.0} if inside.sum() >= FEW_SEEN else shares_of_likelihood(freedom_and_fit)
         if not inside.all():
             banded = _lower(_information(at, weight), bands)
-        triangle = _cholesky(_prior(mean.shape, stiffness, tension) + banded)
-        expected = before + cho_solve_banded((triangle, True), at.T @ (weight * value), check_finite=False)
+        ways = []
+        for (tension, decade), share in likely.items():
+            stiffness = usual * 10.0**decade
+            triangle = _cholesky(_prior(mean.shape, stiffness, tension) + banded)
+            expected = before + cho_solve_banded((triangle, True), at.T @ (weight * value), check_finite=False)
+            ways.append(_AsStiff(share, stiffness, tension, triangle, expected))
+        expected = _mean(ways, [way.expected for way in ways])
         value = (_over_cells(mean.shape) @ expected).reshape(mean.shape) + level
-        return cls(value, seen, at, weight, stiffness, tension, triangle, expected, level)
+        return cls(value, seen, at, weight, tuple(ways), level)
+
+    @property
+    def expected(self) -> Floats:
+        """(n,) c, from the level, mm."""
+        return _mean(self.ways, [way.expected for way in self.ways])
 
     def shares(self, area: Floats) -> tuple[Floats, float]:
         """What each cell's mean weighs in the integral over `area` (rows, columns), mm², and the variance that the surface itself adds, mm⁶."""
-        wanted = _over_cells(area.shape).T @ area.ravel()
-        u = cho_solve_banded((self.factor, True), wanted, check_finite=False)
-        weights, placed = np.zeros(area.shape), self.at @ u
-        weights[self.seen] = self.weight * placed
-        return weights, max(float(wanted @ u - placed @ (self.weight * placed)), 0.0)
+        weights, hidden = self.passed_on((_over_cells(area.shape).T @ area.ravel())[None])
+        return weights[0], max(float(hidden[0, 0]), 0.0)
 
     def left_to_before(self, area: Floats) -> Floats:
         """(n,) what the coefficients that it was expected to have weigh in the integral over `area` (rows, columns), mm²: a − BᵀWB A⁻¹ a."""
         wanted = _over_cells(area.shape).T @ area.ravel()
-        u = cho_solve_banded((self.factor, True), wanted, check_finite=False)
+        u = _mean(self.ways, [way.solve(wanted) for way in self.ways])
         return np.asarray(wanted - self.at.T @ (self.weight * (self.at @ u)), dtype=np.float64)
 
-    def passed_on(self, left: Floats) -> tuple[Floats, Floats]:
-        """What each cell's mean weighs where a surface about this one leaves `left` (k, n) to it, (k, rows, columns) mm², and the covariance of that
-        by what this one does not know, (k, k) mm⁶."""
-        u = cho_solve_banded((self.factor, True), left.T, check_finite=False)
-        weights, placed = np.zeros((len(left), *self.seen.shape)), (self.at @ u).T
-        weights[:, self.seen] = self.weight * placed
-        return weights, np.asarray(left @ u - placed @ (self.weight * placed).T, dtype=np.float64)
+    def passed_on(self, wanted: Floats) -> tuple[Floats, Floats]:
+        """What each cell's mean weighs in sums of the coefficients of which each weighs `wanted` (k, n), (k, rows, columns), and the covariance of these
+        by what the surface does not know, (k, k): of each stiffness, and of which it is."""
+        weights, hidden, off = np.zeros((len(wanted), *self.seen.shape)), [], []
+        expected, each = self.expected, []
+        for way in self.ways:
+            u = way.solve(wanted.T)
+            placed = (self.at @ u).T
+            each.append(self.weight * placed)
+            hidden.append(wanted @ u - placed @ (self.weight * placed).T)
+            off.append(wanted @ (way.expected - expected))
+        weights[:, self.seen] = _mean(self.ways, each)
+        apart = _mean(self.ways, [np.outer(one, one) for one in off])
+        return weights, np.asarray(_mean(self.ways, hidden) + apart, dtype=np.float64)
 
     def deepest(self, window: tuple[float, float], inside: Bools) -> tuple[float, float]:
         """Least mean over a window, mm, and its standard deviation.
@@ -195,14 +235,36 @@ class SideSurface:
         return np.ascontiguousarray(np.moveaxis(of_rows, 1, 2)) + self.level
 
     def _drawn(self, shape: tuple[int, ...]) -> Floats:
-        """Coefficients of surfaces from N(c, A⁻¹), without the level, (n, `DRAWS`); half of them from either end of the face: which comes first does not
-        matter."""
+        """Coefficients of surfaces from N(c, A⁻¹), without the level, (n, `DRAWS`), of each stiffness its share; half of them from either end of the face:
+        which comes first does not matter."""
         turned = _from_other_end(shape)
-        half = _random(self.at.shape[1])
-        information = _lower(_information(self.at, self.weight), len(self.factor), turned)
-        from_above = _cholesky(_prior(shape, self.stiffness, self.tension) + information)
-        drawn = np.hstack([_from_below(self.factor, half), _from_below(from_above, half)[turned]])
-        return np.asarray(drawn + self.expected[:, None], dtype=np.float64)
+        random = _random(self.at.shape[1])
+        information = _lower(_information(self.at, self.weight), len(self.ways[0].factor), turned)
+        ends = np.rint(np.cumsum([way.share for way in self.ways]) * random.shape[1]).astype(np.int64)
+        drawn = list[Floats]()
+        for way, half in zip(self.ways, np.split(random, ends[:-1], axis=1), strict=True):
+            if not half.size:
+                continue
+            from_above = _cholesky(_prior(shape, way.stiffness, way.tension) + information)
+            both = np.hstack([_from_below(way.factor, half), _from_below(from_above, half)[turned]])
+            drawn.append(both + way.expected[:, None])
+        return np.hstack(drawn)
+
+
+def _mean(ways: Sequence[_AsStiff], values: Sequence[Floats]) -> Floats:
+    """Of what each of `ways` makes of something, by their shares."""
+    return np.asarray(sum(way.share * value for way, value in zip(ways, values, strict=True)), dtype=np.float64)
+
+
+def shares_of_likelihood(
+    freedom_and_fit: Callable[[float, float], tuple[float, float]],
+) -> dict[tuple[float, float], float]:
+    """The share of the likelihood that each tension and decade of stiffness has among all of `TENSION` and `STIFFNESS`, expected alike before anything is
+    seen; those below `LEAST_SHARE` of the greatest are left out."""
+    cost = np.array([np.subtract(*freedom_and_fit(*at)) for at in _GRID])
+    likelihood = np.exp(-0.5 * (cost - cost.min()))
+    likelihood[likelihood < LEAST_SHARE] = 0.0
+    return {at: float(own / likelihood.sum()) for at, own in zip(_GRID, likelihood, strict=True) if own}
 
 
 def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) -> tuple[float, float]:

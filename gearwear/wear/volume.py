@@ -141,7 +141,7 @@ def region_volumes(
     share = doubt = np.zeros(number)
     if rest.any():
         beyond = surfaces.over(rest)
-        doubt = np.diag(errors.by_chance(beyond, rest, LEAST_PLACEBO) + errors.of_wear(beyond, rest))
+        doubt = np.diag(errors.by_chance(beyond, rest, LEAST_PLACEBO))
         share = share_of_rest(beyond.value, doubt)
     summed, support = alone, near
     if share.any():
@@ -165,7 +165,7 @@ def share_of_rest(more: Floats, variance: Floats) -> Floats:
     more : (k,) float
         What it seems to have lost, mm³.
     variance : (k,) float
-        Of that where the rest is as made, mm⁶.
+        Of that where the rest is as made, mm⁶: chance alone. How far wear may be another than the few points on it show is no reason that it is none.
 
     Notes
     -----

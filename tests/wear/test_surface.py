@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from gearwear.wear.surface import STIFFNESS, TENSION, SideSurface, _at_points, _over_cells, _over_windows, likeliest
+from gearwear.wear.surface import (
+    STIFFNESS,
+    TENSION,
+    SideSurface,
+    _at_points,
+    _over_cells,
+    _over_windows,
+    likeliest,
+    shares_of_likelihood,
+)
 
 NOISE = 0.004
 SHAPE = (13, 8)
@@ -77,6 +86,48 @@ def test_the_volume_of_a_hollow_lies_within_its_deviation(shape, density, depth,
     assert abs(np.mean(pulls)) < 4.0 / math.sqrt(40.0)
 
 
+@pytest.mark.parametrize("density", [0.1, 0.15, 0.25])
+def test_of_a_few_points_the_volume_lies_within_its_deviation(density):
+    """Some 10 to 25 points on a flank, one of them in the deeper half of the hollow: the mean square of a hundred pulls is that of a Gauss at most, as far
+    as that many tell (χ², 0.999), and at least nine in ten are no more than 1.96."""
+    random, pulls = np.random.default_rng(9), []
+    while len(pulls) < 100:
+        middle = np.array(SHAPE) * random.uniform(0.4, 0.6, 2)
+        mean, count, offset = cells_of(random, SHAPE, density, lambda z, x, m=middle: hollow(z, x, SHAPE, 0.2, m))
+        if (surface := found(mean, count, offset, count > 0)) is None or np.nanmin(mean) > -0.1:
+            continue
+        weights, hidden = surface.shares(np.ones(SHAPE))
+        noise = float((weights**2 * NOISE**2 / np.maximum(count, 1.0)).sum())
+        pulls.append((-surface.value.sum() - hollow_volume(SHAPE, 0.2)) / math.sqrt(noise + hidden))
+    assert np.sum(np.square(pulls)) < stats.chi2.ppf(0.999, 100)
+    assert np.mean(np.abs(pulls) < 1.96) > 0.9
+
+
+def test_each_stiffness_counts_with_its_share_of_the_likelihood():
+    """−2 log likelihoods that are told: exp of minus half of them, over their sum, without what is below a hundredth of the greatest."""
+    cost = {(tension, float(decade)): 20.0 for tension in TENSION for decade in STIFFNESS} | {(0.1, -1.0): 3.0, (1.0, 2.0): 5.0}
+    shares = shares_of_likelihood(lambda tension, decade: (cost[tension, decade] + 1.0, 1.0))
+    assert shares == pytest.approx({(0.1, -1.0): 1.0 / (1.0 + math.exp(-1.0)), (1.0, 2.0): 1.0 / (1.0 + math.e)})
+
+
+def test_surfaces_are_drawn_of_every_stiffness_that_a_few_cells_leave_open():
+    """Their integral scatters as it is said to: by what the points and the surface leave open at each stiffness, and by which it is."""
+    random = np.random.default_rng(9)
+    mean, count, offset = cells_of(random, SHAPE, 0.1, lambda z, x: hollow(z, x, SHAPE, 0.2, (6.0, 4.0)))
+    surface, area = found(mean, count, offset, count > 0), _over_cells(SHAPE).T @ np.ones(count.size)
+    share = np.array([way.share for way in surface.ways])
+    assert share.sum() == pytest.approx(1.0)
+    whole = np.array([area @ way.solve(area) for way in surface.ways])
+    by_points = np.array([(surface.weight * (surface.at @ way.solve(area)) ** 2).sum() for way in surface.ways])
+    expected = np.array([area @ way.expected for way in surface.ways])
+    apart = share @ (expected - share @ expected) ** 2
+    hidden = surface.shares(np.ones(SHAPE))[1]
+    assert hidden == pytest.approx(share @ (whole - by_points) + apart, rel=1e-9)
+    assert apart > 0.1 * hidden
+    integrals = (_over_cells(SHAPE) @ surface._drawn(SHAPE)).sum(axis=0)
+    assert integrals.var() == pytest.approx(share @ whole + apart, rel=4.0 * math.sqrt(2.0 / len(integrals)))
+
+
 def test_weights_are_those_of_the_volume_and_keep_a_level():
     """The integral is the weighted sum of the cells' means, and one of all of them by 1 moves it by the area."""
     random = np.random.default_rng(6)
@@ -108,7 +159,7 @@ def test_the_curve_of_a_planar_section():
 
 def test_a_side_of_a_few_cells_says_nothing():
     mean = np.full(SHAPE, np.nan)
-    mean[2, :4] = 0.0
+    mean[2, :3] = 0.0
     assert found(mean, np.nan_to_num(mean + 3.0), np.zeros((2, *SHAPE)), np.ones(SHAPE, dtype=bool)) is None
 
 
@@ -117,9 +168,10 @@ def test_what_is_hidden_is_what_the_surface_may_be_beside_the_expected_one():
     random = np.random.default_rng(8)
     mean, count, offset = cells_of(random, SHAPE, 1.5, lambda z, x: hollow(z, x, SHAPE, 0.1, (6.0, 4.0)))
     surface = found(mean, count, offset, np.ones(SHAPE, dtype=bool))
-    number = surface.factor.shape[1]
+    (only,) = surface.ways
+    number = only.factor.shape[1]
     triangle = np.zeros((number, number))
-    for below, band in enumerate(surface.factor):
+    for below, band in enumerate(only.factor):
         triangle[np.arange(below, number), np.arange(number - below)] = band[: number - below]
     whole = triangle @ triangle.T
     u = np.linalg.solve(whole, _over_cells(SHAPE).T @ np.ones(count.size))
