@@ -237,7 +237,7 @@ class _Surfaces:
                 if surface is not None and wide[at].any():
                     filled[at] = np.where(means.shown[at], filled[at], surface.value)
                     if part.start and mask[at].any():
-                        there = mask[at] & sheets.seen[at]
+                        there = mask[at]
                         least, deepest[i, 1] = surface.deepest(window, there)
                         deepest[i, 0] = -least
                         deeper = np.where(means.held[at], surface.value - means.deviation[at], 0.0)
