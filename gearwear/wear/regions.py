@@ -28,7 +28,7 @@ from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_sides, faint_wear, flank_limits, upper_limit
 from gearwear.wear.places import LaidFlat, lay_flat, standing_out
 from gearwear.wear.ridge import PitchRidge
-from gearwear.wear.volume import DEEPEST_OVER, Volumes, region_volumes
+from gearwear.wear.volume import DEEPEST_OVER, Volumes, region_volumes, unexplained_rms
 
 LEAST_VOLUME = 5.0
 """Least volume of a region in the standard deviations of its own cells."""
@@ -270,13 +270,14 @@ def find_wear(
     common = common_level_std(covariance, area, where[:, 1]) * peaks
     if loop is not None:
         common = np.maximum(common, np.take(loop.as_made_std, where[:, 1]))
-    level = np.hypot(common, volumes.apart[where[:, 1]])
+    level = np.hypot(np.hypot(common, volumes.apart[where[:, 1]]), unexplained_rms(loop))
     regions = list[WearRegion]()
     for i in map(int, np.flatnonzero(sure)):
         one = tuple(where[i])
         flank = _Flank.of(laid, volumes, i, places.mask[one], whole[i], where[i])
         region = flank.region(float(stds[i]), noise, loop, errors, float(level[i]))
-        deep = region.max_depth > BEYOND_CHANCE * region.max_depth_std
+        # A patch too narrow for its surface to have a deepest place is known by its volume alone.
+        deep = bool(np.isfinite(volumes.deepest[i]).all()) and region.max_depth > BEYOND_CHANCE * region.max_depth_std
         sure[i] = places.by_level[one] or whole_side[i] or deep or region.volume > beyond_chance[i]
         if sure[i]:
             regions.append(region)

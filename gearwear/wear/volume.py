@@ -15,7 +15,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import SideMaps
-from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
+from gearwear.wear.cell_means import FEW, At, CellMeans, CommonSurface
 from gearwear.wear.made_apart import made_apart
 from gearwear.wear.surface import SideSurface
 from gearwear.wear.uncertainty import CellErrors, edge_covariance, ending_below, region_weights, torn_beyond
@@ -27,6 +27,8 @@ ALARM = 0.05
 """Chance that any place of a scan is called a pit that is none."""
 FEWEST_PLACEBOS, FEWEST_SIDES = 5, 3
 """Sides without wear from which on they are compared whole; sides with enough unworn cells of a region from which on those say something."""
+FEWEST_OF_FILLET = 12
+"""Cells of a fillet from which on they say how it runs, and how stiff it is: it has a few columns, and little of it is worn."""
 LEAST_PLACEBO = 0.5
 """Share of a flank that is unworn on another side from which on it stands for the whole: less, blown up, is nothing but noise."""
 
@@ -231,8 +233,11 @@ class _Surfaces:
                 at = (*side, slice(None), part)
                 if not part.start and not wide[at].any():
                     continue
-                about = common.get(side[1]) if part.start else None
-                surface = means.surface(at, wide[at], None if about is None else about.surface)
+                if part.start:
+                    about = common.get(side[1])
+                    surface = means.surface(at, wide[at], None if about is None else about.surface)
+                else:
+                    surface = _of_fillet(means, at, wide[at])
                 parts.append((i, part, surface))
                 if surface is not None and wide[at].any():
                     filled[at] = np.where(means.shown[at], filled[at], surface.value)
@@ -338,10 +343,23 @@ class _Errors:
         return np.asarray(level @ level.T + np.einsum("sik,sjk->ij", own, own), dtype=np.float64)
 
 
+def _of_fillet(means: CellMeans, at: At, wide: Bools) -> SideSurface | None:
+    """The surface of a fillet, as stiff as where it is worn if enough of it is, else as all of it; None where too few of its cells hold points."""
+    held = means.held[at]
+    if held.sum() < FEWEST_OF_FILLET:
+        return None
+    return means.surface(at, wide if (wide & held).sum() >= FEWEST_OF_FILLET else np.ones_like(wide))
+
+
+def unexplained_rms(loop: Loop | None) -> float:
+    """How far patterns that have no name may be off under wear, mm: by their own size, as they are drawn on from beside it. One that all teeth share is
+    known from the other teeth, and a wave in space from all of them."""
+    return 0.0 if loop is None else math.sqrt(sum(pattern.rms**2 for pattern in loop.patterns if not pattern.known_everywhere))
+
+
 def unexplained_covariance(loop: Loop | None, weights: Floats | SideWeights) -> Floats:
-    """Covariance, mm⁶, by patterns round the gear that have no name: drawn on under the wear of a flank from those beside it, they may be off by
-    their own size there. A pattern that all teeth share is known from the other teeth, and a wave in space from all of them."""
-    rms = 0.0 if loop is None else math.sqrt(sum(pattern.rms**2 for pattern in loop.patterns if not pattern.known_everywhere))
+    """Covariance of sums, mm⁶, by patterns that have no name (`unexplained_rms`)."""
+    rms = unexplained_rms(loop)
     result = np.zeros((len(weights), len(weights)))
     for _, which, values in by_side(weights) if rms > 0.0 else ():
         offset = rms * values.sum(axis=(1, 2))
