@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -40,19 +41,20 @@ def test_the_deepest_place_is_a_mean_over_half_a_millimetre(size):
 @pytest.mark.parametrize(
     ("certainty", "of_all", "deep", "hollow", "number"),
     [
-        (4.9, 9.0, True, False, 0),
-        (5.1, 9.0, False, False, 1),
-        (9.0, 2.9, False, False, 0),
-        (9.0, 3.1, False, False, 1),
-        (9.0, 2.9, True, False, 1),
-        (4.9, 9.0, True, True, 1),
-        (4.9, 2.9, False, True, 0),
+        (4.9, 9.0, 0.1, False, 0),
+        (5.1, 9.0, 0.0, False, 1),
+        (9.0, 2.9, 0.0, False, 0),
+        (9.0, 3.1, 0.0, False, 1),
+        (9.0, 2.9, 0.1, False, 1),
+        (9.0, 2.9, math.nan, False, 0),
+        (4.9, 9.0, 0.1, True, 1),
+        (4.9, 2.9, 0.0, True, 0),
     ],
     ids=str,
 )
 def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monkeypatch, certainty, of_all, deep, hollow, number):
-    """The same patch, with what its cells come to by chance, and all of its ±, set to just more and just less; with or without a deepest place; and
-    standing out of its flank or not."""
+    """The same patch, with what its cells come to by chance, and all of its ±, set to just more and just less; with or without a deepest place, or
+    too narrow for its surface to have one; and standing out of its flank or not."""
     cells = every_cell(GEAR, 0.5)
     flank = flanks_of(cells)
     flank[4, 0, 8:20, 4:16] = -0.1
@@ -60,14 +62,14 @@ def test_a_region_is_five_of_its_cells_standard_deviations_and_three_of_all(monk
     known = find_wear(patch, NOISE)
     volume = known.volume
     assert volume == pytest.approx(0.1 * 144 * known.side_maps.area[-1], rel=1e-3)
-    filled = -float(deep) * known.depth
+    filled = -float(deep != 0.0) * known.depth
     given = Volumes(
         np.array([volume]),
         np.array([certainty]),
         np.array([certainty]),
         np.array([[(volume / of_all) ** 2]]),
         filled,
-        np.full((1, 2), np.nan),
+        np.array([[deep, 0.001 + 0.0 * deep]]),
         np.zeros(1, dtype=bool),
         np.zeros(1),
         np.zeros(2),

@@ -21,6 +21,7 @@ from gearwear.placing.strays import near_centre
 from gearwear.wear.regions import find_wear
 from gearwear.wear.uncertainty import noise_covariance, region_weights
 from gearwear.wear.volume import unexplained_covariance
+from tests.diagnose.plain import PLAIN
 from tests.placing.placing import designed, refined, true_pose
 from tests.synthetic import Effect, Patch, Recipe, SlidingWear, Texture, make_scan
 
@@ -161,6 +162,20 @@ def test_effects_too_small_to_be_named_are_in_the_interval():
         pulls.append([(found.volume - scan.truth.volume_mm3) / found.volume_std for found in both])
     known, unknown = (float((np.array(one) ** 2).sum()) for one in zip(*pulls, strict=True))
     assert known < stats.chi2.ppf(0.9999, len(small)) < unknown
+
+
+def test_the_deepest_place_may_be_off_by_a_pattern_without_a_name_too():
+    """One of 20 µm round the gear, written into what the loop left: 0.3 mm deep, no better than that."""
+    recipe = Recipe(jitter=1.0, noise_um=5.0, pose="none", wear=(Patch(3, 1, 300.0, (37.0, 43.0), (-90.0, 90.0)),))
+    located = locate(make_scan(recipe.of_size(15_000), 3).points, PINION)
+    cells = bin_points(located, CellGrid.for_scan(PINION, len(located)))
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), PLAIN, worn=frozenset())
+    pattern = Pattern(7, "alike", 0.0, 0.0, 0.02, 0.02, 0.0, np.zeros(len(cells.count)))
+    left = cells.with_deviation(loop.left)
+    (known,), (off,) = (find_wear(left, loop.noise, loop=one).regions for one in (loop, replace(loop, patterns=(pattern,))))
+    assert known.max_depth_std < 0.015
+    assert 0.02 <= off.max_depth_std < 0.025
+    assert off.max_depth == known.max_depth == pytest.approx(0.3, abs=0.01)
 
 
 def test_a_planar_section_loses_area():
