@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import ndtri, stdtrit
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.quantity import NORMAL_95
@@ -24,6 +24,8 @@ FEWEST_TEETH = 6
 """Teeth without wear from which on their thickness scatters."""
 SEEN = 0.5
 """Share of the teeth on which a place, and of a strip, that must be seen for anything to be said of all."""
+CHANCE = 0.05
+"""Chance, of both signs together, that any strip of a side that stands nowhere proud is taken to."""
 WITHIN = 0.997
 """Share of teeth made like the sound ones whose thickness is taken for made."""
 
@@ -111,10 +113,30 @@ def standing_proud(sheets: SideMaps, loop: Loop | None, worn: frozenset[Side]) -
     if loop is None or loop.made is None or len(worn) != 1:
         return 0.0, 0.0
     (side,) = worn
-    highest = highest_strip(above_made(sheets, side))
-    if highest > NORMAL_95 * loop.as_made_std[side.index]:
-        level[side.index] = highest
+    if any(face.side is side for face in loop.context.faces):  # where no mate ran it shows how high it was made
+        return 0.0, 0.0
+    above = above_made(sheets, side)
+    flank = np.where(sheets.seen, sheets.deviation, np.nan)[:, side.index, :, sheets.fillet :]
+    means, stds = zip(*(_strips(above, flank, axis) for axis in (0, 1)), strict=True)
+    mean, std = np.concatenate(means), np.concatenate(stds)
+    # All are as far off as the level is; by their own points the highest of many is high by chance.
+    sure = float(ndtri(1.0 - 0.5 * CHANCE / max(len(mean), 1)))
+    chance = np.hypot(NORMAL_95 * loop.as_made_std[side.index], sure * std)
+    level[side.index] = float(mean[mean > chance].max(initial=0.0))
     return level[0], level[1]
+
+
+def _strips(above: Floats, flank: Floats, axis: int) -> tuple[Floats, Floats]:
+    """Means of the strips over an axis that were seen, of heights `above` (rows, columns), mm, and their standard deviations, by what the flanks
+    (teeth, rows, columns) of the side scatter there: of a median of that many."""
+    mean, often = strip_means(above, axis)
+    known = np.isfinite(flank)
+    own = np.where(known, flank, 0.0).sum(axis=axis + 1) / np.maximum(known.sum(axis=axis + 1), 1)
+    told = known.any(axis=axis + 1)
+    number = np.maximum(told.sum(axis=0), 2)
+    centre = np.where(told, own, 0.0).sum(axis=0) / number
+    variance = np.where(told, (own - centre) ** 2, 0.0).sum(axis=0) / (number - 1)
+    return mean[often], np.sqrt(0.5 * math.pi * variance / number)[often]
 
 
 def above_made(sheets: SideMaps, side: Side) -> Floats:

@@ -4,13 +4,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from gearwear.design.side import Side
 from gearwear.design.surface import locate
+from gearwear.diagnose.active_face import ActiveFace
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import make_side_maps
 from gearwear.wear.own_level import at_own_level, standing_proud
 from gearwear.wear.regions import find_wear
+from tests.placing.cells import every_cell, flanks_of, with_flanks
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Patch, Recipe, make_scan
 
@@ -84,8 +87,8 @@ def sliding(thick, shared=0.0):
     return make_side_maps(cells.with_deviation(deviation))
 
 
-def as_known_to(std):
-    return SimpleNamespace(as_made_std=(std, std), made=np.zeros((1, 1)))
+def as_known_to(std, faces=()):
+    return SimpleNamespace(as_made_std=(std, std), made=np.zeros((1, 1)), context=SimpleNamespace(faces=faces))
 
 
 @pytest.mark.parametrize("thick", [0.02, 0.04])
@@ -105,3 +108,26 @@ def test_where_both_sides_are_worn_or_no_loop_was_closed_nothing_is_said():
     assert standing_proud(sheets, as_known_to(0.004), frozenset(Side)) == (0.0, 0.0)
     assert standing_proud(sheets, as_known_to(0.004), frozenset()) == (0.0, 0.0)
     assert standing_proud(sheets, None, LEFT) == (0.0, 0.0)
+
+
+def test_the_highest_of_many_strips_is_high_by_chance():
+    """Flanks slid by 60 µm on one side of the pitch point and not on the other, of noise alone: a level known to 0.1 µm stands proud in no more of 60 gears
+    than five in a hundred leave likely (binomial, 0.999); where it is 2 µm thicker, in all of them."""
+    cells = every_cell(PINION, 0.9)
+    taken = []
+    for seed in range(60):
+        flank = flanks_of(cells)
+        flank[:, 0, :, : flank.shape[3] // 2] -= 0.06
+        flank += 0.004 * np.random.default_rng(seed).standard_normal(flank.shape)
+        sheets = [make_side_maps(with_flanks(cells, flank + more)) for more in (0.0, np.array([0.002, 0.0])[:, None, None])]
+        taken.append([standing_proud(one, as_known_to(0.0001), LEFT)[0] for one in sheets])
+    none, thick = np.array(taken).T
+    assert np.count_nonzero(none) <= stats.binom.ppf(0.999, 60, 0.05)
+    assert np.all(thick > 0.0) and abs(thick.mean() - 0.002) < 0.001
+
+
+def test_a_side_that_shows_where_no_mate_ran_needs_no_strip_for_its_level():
+    sheets = sliding(0.02)
+    assert standing_proud(sheets, as_known_to(0.004), LEFT)[0] > 0.01
+    assert standing_proud(sheets, as_known_to(0.004, (ActiveFace(Side.RIGHT, 2.0, 9.0),)), LEFT)[0] > 0.01
+    assert standing_proud(sheets, as_known_to(0.004, (ActiveFace(Side.LEFT, 2.0, 9.0),)), LEFT) == (0.0, 0.0)

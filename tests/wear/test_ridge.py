@@ -27,7 +27,7 @@ WIDTH = 0.2 * GEAR.transverse_module
 
 
 def loop():
-    context = SimpleNamespace(pitch_roll=PITCH, sliding=lambda roll: 1.0 - PITCH / roll)
+    context = SimpleNamespace(pitch_roll=PITCH, sliding=lambda roll: 1.0 - PITCH / roll, faces=())
     return SimpleNamespace(as_made_std=(AS_KNOWN, AS_KNOWN), made=np.zeros((1, 1)), context=context)
 
 
