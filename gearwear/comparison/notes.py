@@ -13,7 +13,7 @@ from gearwear.comparison.results import PairResult
 from gearwear.comparison.same_teeth import SameTeeth
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.quantity import counted, significant
+from gearwear.design.quantity import NORMAL_95, counted, number, significant
 from gearwear.design.side import Side
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FILLET, FLANK, TIP
@@ -50,6 +50,7 @@ def notes_of(
     gear, unworn = measured.gear, before is not None
     return (
         *measured.doubts,  # what changes the meaning of numbers first: a terminal shows the first few
+        *off_the_drawing(measured.loop),
         *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn) else ()),
         *worn_notes(measured, wear, unworn),
         *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
@@ -185,6 +186,24 @@ def edge_notes(wear: Wear) -> tuple[str, ...]:
         f"{counted(wear.edges, 'flank')} with metal missing at an end of the face alone, {significant(1e3 * wear.edge_depth, 2)} µm at most: rounded or nicked"
         " edges, not counted as wear",
     )
+
+
+def off_the_drawing(loop: Loop | None) -> tuple[str, ...]:
+    """Dimensions that were fitted as they are and lie farther off the drawing than it allows: the design has a wrong number, or the blank had."""
+    said = list[str]()
+    if loop is None:
+        return ()
+    for effect in loop.form:
+        allowed, (size, *others) = effect.candidate.effect.tolerance(loop.context), effect.parameters.values()
+        if allowed is None or others or not isinstance(size.value, float) or not isinstance(size.std, float):
+            continue
+        if 1e-3 * (abs(size.value) - NORMAL_95 * size.std) > allowed:
+            name, way = effect.name.replace("_", " "), "more" if size.value > 0.0 else "less"
+            off = number(1e-3 * abs(size.value))
+            said.append(
+                f"the {name} is {off} mm {way} than the drawing's, whose tolerance is ± {number(allowed)} mm: taken as seen"
+            )
+    return tuple(said)
 
 
 def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:

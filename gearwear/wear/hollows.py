@@ -180,11 +180,17 @@ def _within(flanks: Sequence[_Arcs], number: Floats, made: Floats, width: int) -
     # Of the surface that is expected: the least of one that is drawn is lower by its luck.
     depth = sum(band.mean(axis=0) for band in over_band) - ndimage.minimum_filter1d(expected, reach, mode="nearest")
     # Both flanks have the same random numbers: turned, they are independent; either way, as neither flank comes first.
-    quarter, variance = draws // 4, np.zeros(n)
+    quarter, variance, by_chance = draws // 4, np.zeros(n), np.zeros(n)
     for turned, still in ((0, 1), (1, 0)):
         at_radius, band = (
             np.roll(values[turned], quarter, axis=0) + values[still]
             for values in ([at_radius for at_radius, _ in arcs], over_band)
         )
         variance += 0.5 * (band - ndimage.minimum_filter1d(at_radius + made, reach, axis=1, mode="nearest")).var(axis=0)
+        even = (band - band.mean(axis=0)) - ndimage.minimum_filter1d(
+            at_radius - at_radius.mean(axis=0), reach, axis=1, mode="nearest"
+        )
+        by_chance += 0.5 * (even**2).mean(axis=0)
+    # A flank that is even along the face has a lowest place too, by chance: what is hollow beyond that, as squares add.
+    depth = np.sqrt(np.maximum(depth * np.abs(depth) - by_chance, 0.0))
     return depth, np.sqrt(variance), np.stack(spread)

@@ -5,13 +5,17 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
+from types import SimpleNamespace
 
 import numpy as np
 
 import gearwear as gw
+from gearwear.comparison.notes import off_the_drawing
 from gearwear.comparison.placed_notes import SMOOTHED, smoothing_of
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
+from gearwear.diagnose.effects.tip_diameter import EFFECT as TIP_DIAMETER
+from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.report.words.terminal import lines
 from gearwear.report.words.verdict import doubts
 from tests.placing.test_smoothing import flanks, form, smoothed
@@ -52,6 +56,23 @@ def test_what_changes_the_meaning_of_numbers_comes_first():
 def test_the_terminal_shows_it():
     shown = " ".join(line for line, _ in lines(results()))
     assert "face_width is 14 mm: taken as seen" in shown.replace("\u00a0", " ")
+
+
+def test_a_dimension_beyond_its_tolerance_is_told():
+    """A blank turned 0.42 mm too small where the drawing allows 0.19, as it is fitted; not one within that, nor one that is not known to lie beyond."""
+
+    def told(value, std):
+        size = ParameterEstimate(1e3 * value, 1e3 * std, "um")
+        effect = SimpleNamespace(
+            name="tip_diameter", candidate=SimpleNamespace(effect=TIP_DIAMETER), parameters={"diameter_um": size}
+        )
+        context = SimpleNamespace(gear=SimpleNamespace(tolerance=SimpleNamespace(tip_diameter=0.19)))
+        return off_the_drawing(SimpleNamespace(form=(effect,), context=context))
+
+    (note,) = told(-0.42, 0.001)
+    assert note == "the tip diameter is 0.42 mm less than the drawing's, whose tolerance is ± 0.19 mm: taken as seen"
+    assert "0.25 mm more" in told(0.25, 0.001)[0]
+    assert told(0.18, 0.001) == told(0.25, 0.05) == off_the_drawing(None) == ()
 
 
 def test_no_note_is_lost_or_said_twice():

@@ -112,6 +112,25 @@ def test_within_a_window_a_parabola_hides_what_its_mean_says():
     assert _within([in_sections(above), in_sections(curve)], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)
 
 
+def test_a_flank_that_is_even_along_the_face_has_no_hollow_but_by_chance():
+    """Sections that are known to 1 µm each, and all alike: the least of nine and more lies below their mean by chance, in every window; about half of
+    these are no lower than chance has it, and what is left is less than half. Of a hollow of 10 µm squares take a twentieth at most."""
+    random, number, half = np.random.default_rng(2), 400, 4
+    flat, none = np.zeros(number), np.zeros((1 + len(ACROSS), 200, number))
+    expected, draws = 0.001 * random.standard_normal(number), 0.001 * random.standard_normal((200, number))
+    even = in_sections(none + expected + draws)
+    depth, _, _ = _within([even, in_sections(none)], np.ones((2, number)), flat, 2 * half + 1)
+    by_chance = [
+        expected[i - half : i + half + 1].mean() - expected[i - half : i + half + 1].min() for i in range(half, number - half)
+    ]
+    assert 0.3 < (depth == 0.0).mean() < 0.7
+    assert depth.mean() < 0.5 * np.mean(by_chance)
+    hollow = expected + np.where(np.arange(number) == 200, -0.01, 0.0)
+    deep, _, _ = _within([in_sections(none + hollow + draws), in_sections(none)], np.ones((2, number)), flat, 2 * half + 1)
+    plain = (none + hollow + draws).mean(axis=1)[0]
+    assert deep[200] == pytest.approx(plain[196:205].mean() - plain[200], rel=0.05)
+
+
 def test_arcs_by_few_coefficients_are_those_in_all_sections():
     """Less what flanks have in common, too: surfaces are kept by what is along the face, however many sections lie across it."""
     rng = np.random.default_rng(4)
