@@ -331,7 +331,7 @@ MUTATIONS = [
         ("wear/surface.py", "np.maximum(count[seen], 1.0)) / 12.0", "np.maximum(count[seen], 1.0)) / 3.0", "wear/test_surface.py"),
         ("wear/surface.py", "wanted @ u - placed @ (self.weight * placed)", "0.1 * (wanted @ u - placed @ (self.weight * placed))", "wear/test_surface.py"),
         ("wear/own_level.py", "sure * std)", "0.0 * std)", "wear/test_own_level.py"),
-        ("wear/hollows.py", "np.abs(depth) - by_chance", "np.abs(depth)", "wear/test_hollows.py"),
+        ("wear/hollows.py", "depth**2 - by_chance", "depth**2", "wear/test_hollows.py"),
         ("wear/regions.py", "unexplained_rms(loop))", "0.0)", "wear/test_volume.py"),
         ("wear/regions.py", "bool(np.isfinite(volumes.deepest[i]).all()) and region.max_depth", "region.max_depth", "wear/test_uncertainty.py"),
         ("wear/surface.py", "FEWEST_SEEN = 4", "FEWEST_SEEN = 12", "wear/test_thin_flanks.py"),

@@ -191,6 +191,7 @@ def _within(flanks: Sequence[_Arcs], number: Floats, made: Floats, width: int) -
             at_radius - at_radius.mean(axis=0), reach, axis=1, mode="nearest"
         )
         by_chance += 0.5 * (even**2).mean(axis=0)
-    # A flank that is even along the face has a lowest place too, by chance: what is hollow beyond that, as squares add.
-    depth = np.sqrt(np.maximum(depth * np.abs(depth) - by_chance, 0.0))
+    # A flank that is even along the face has a lowest place too, by chance: what is hollow beyond that, as squares add. Where points lie lower than all that
+    # there is about them, nothing was looked for.
+    depth = np.where(depth > 0.0, np.sqrt(np.maximum(depth**2 - by_chance, 0.0)), depth)
     return depth, np.sqrt(variance), np.stack(spread)
