@@ -7,8 +7,7 @@ either end of the face on either side. Wear is on the side that carries.
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.design.surface import END_HIGH, END_LOW, FLANK, OTHER, Bands, SurfacePoints, locate
+from gearwear.design.surface import END_HIGH, END_LOW, FLANK, OTHER, SurfacePoints
 from gearwear.placing.tip_edge import (
     ABOVE,
     AS_DRAWN,
@@ -31,6 +30,7 @@ from gearwear.placing.tip_edge import (
     STEEPEST_FLANK,
     STEP,
     departs,
+    on_flanks_alone,
 )
 
 REACH, REACH_SHARE = 1.0, 0.2
@@ -97,7 +97,8 @@ def fit_end_edge(located: SurfacePoints, gear: Gear, noise: float) -> EndEdge:
     -----
     As `fit_tip_edge`, with each flank's deviation about its own further in, bin by bin of the distance from an end.
     """
-    flank, reach = _to_the_ends(located, gear), min(REACH * gear.transverse_module, REACH_SHARE * gear.face_width)
+    reach = min(REACH * gear.transverse_module, REACH_SHARE * gear.face_width)
+    flank = _to_the_ends(located, gear, 2.0 * reach)
     z = flank.measured[:, 2]
     found = np.zeros((2, 2, 2))
     for end, height in enumerate((z, gear.face_width - z)):
@@ -124,17 +125,13 @@ def _places(values: Floats) -> Places:
     return (a, b), (c, d)
 
 
-def _to_the_ends(located: SurfacePoints, gear: Gear) -> SurfacePoints:
-    """Points near the ends on flanks that go on to these, whatever edges the design has; of the ends too, which lie deep below."""
+def _to_the_ends(located: SurfacePoints, gear: Gear, reach: float) -> SurfacePoints:
+    """Points within `reach` mm of the ends on flanks that go on to these, whatever edges the design has; of the ends too, which lie deep below."""
     points = located.measured
     share = (np.hypot(points[:, 0], points[:, 1]) - gear.form_radius) / (gear.flank_end_radius - gear.form_radius)
-    reach = 2.0 * min(REACH * gear.transverse_module, REACH_SHARE * gear.face_width)
     near = np.isin(located.surface, (FLANK, END_LOW, END_HIGH, OTHER)) & (share > HEIGHTS[0]) & (share < HEIGHTS[1])
     near &= (points[:, 2] < reach) | (points[:, 2] > gear.face_width - reach)
-    sharp = gear.recut(end_chamfer=0.0, end_rounding=0.0, ends_seen=None)
-    never = (math.inf, math.inf)
-    found = locate(points[near], sharp, replace(Bands.wide(sharp), tip=never, end_low=never, end_high=never))
-    return found.take(found.surface == FLANK)
+    return on_flanks_alone(points[near], gear.recut(end_chamfer=0.0, end_rounding=0.0, ends_seen=None))
 
 
 def _edge(tooth: Ints, deviation: Floats, height: Floats, first: float, last: float, gear: Gear) -> tuple[float, float]:

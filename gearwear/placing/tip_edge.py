@@ -160,9 +160,13 @@ def _land(points: Floats, gear: Gear, top: float) -> float | None:
 
 def _on_sharp(points: Floats, gear: Gear) -> SurfacePoints:
     """Points near the tips on flanks that are drawn up to these, whatever edge the design has; of lands too, which lie deep below."""
-    sharp = gear.recut(tip_chamfer=0.0, tip_chamfer_land=None, tip_rounding=0.0)
+    return on_flanks_alone(points, gear.recut(tip_chamfer=0.0, tip_chamfer_land=None, tip_rounding=0.0))
+
+
+def on_flanks_alone(points: Floats, gear: Gear) -> SurfacePoints:
+    """Those of points (n, 3) that lie on flanks where these end at no tip and no end of the face."""
     never = (math.inf, math.inf)
-    found = locate(points, sharp, replace(Bands.wide(sharp), tip=never, end_low=never, end_high=never))
+    found = locate(points, gear, replace(Bands.wide(gear), tip=never, end_low=never, end_high=never))
     return found.take(found.surface == FLANK)
 
 

@@ -87,8 +87,8 @@ def read_scan(paths: Sequence[str | PathLike[str] | Scan], units: str = "mm", st
 
 
 def check_different(scans: Sequence[Scan], others: Sequence[Scan] = (), what: str = "each view once would be right") -> None:
-    """Refuse a file, or points without one, that was given twice: as two views of one gear its points would count double and every ± would be too small, and as the
-    scan before wear as well nothing would have changed.
+    """Refuse a file, or points without one, that was given twice: as two views of one gear its points would count double and every ± would be too small,
+    and as the scan before wear as well nothing would have changed.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets
-from gearwear.wear.surface import SideSurface
+from gearwear.wear.surface import FEWEST_SEEN, SideSurface
 
 FEW, LONE = 3, 5.0
 """Points of a cell that cannot outvote a stray among them; scatters of points by which one may lie off what is round it."""
@@ -76,10 +76,10 @@ class CellMeans:
                 here &= count[tuple(half)] >= LEAST_SHARE * float(np.median(count[tuple(half)][here]))
         return cls(deviation, count, variance, cell_offsets(cells), held, sheets.seen & ~strays)
 
-    def surface(self, at: At, wide: Bools, about: SideSurface | None = None) -> SideSurface | None:
-        """Of the cells `at`; `wide` of them, (rows, columns), say how stiff it is. None where too few hold points."""
+    def surface(self, at: At, wide: Bools, about: SideSurface | None = None, fewest: int = FEWEST_SEEN) -> SideSurface | None:
+        """Of the cells `at`; `wide` of them, (rows, columns), say how stiff it is. None where fewer than `fewest` hold points."""
         means = np.where(self.held[at], self.deviation[at], np.nan)
-        return SideSurface.of(means, self.count[at], self.variance[at], self.offset[(slice(None), *at)], wide, about)
+        return SideSurface.of(means, self.count[at], self.variance[at], self.offset[(slice(None), *at)], wide, about, fewest)
 
 
 @dataclass(frozen=True, slots=True)

@@ -130,9 +130,8 @@ def _strips(above: Floats, flank: Floats, axis: int) -> tuple[Floats, Floats]:
     """Means of the strips over an axis that were seen, of heights `above` (rows, columns), mm, and their standard deviations, by what the flanks
     (teeth, rows, columns) of the side scatter there: of a median of that many."""
     mean, often = strip_means(above, axis)
-    known = np.isfinite(flank)
-    own = np.where(known, flank, 0.0).sum(axis=axis + 1) / np.maximum(known.sum(axis=axis + 1), 1)
-    told = known.any(axis=axis + 1)
+    own, _ = strip_means(flank, axis + 1)
+    told = np.isfinite(flank).any(axis=axis + 1)
     number = np.maximum(told.sum(axis=0), 2)
     centre = np.where(told, own, 0.0).sum(axis=0) / number
     variance = np.where(told, (own - centre) ** 2, 0.0).sum(axis=0) / (number - 1)
@@ -154,7 +153,7 @@ def highest_strip(above: Floats) -> float:
 
 
 def strip_means(above: Floats, axis: int) -> tuple[Floats, Bools]:
-    """Means of heights (rows, columns) over one axis, mm, and of which strips enough was seen."""
+    """Means of heights (rows, columns), or of those of each tooth, over one axis, mm, and of which strips enough was seen."""
     known = np.isfinite(above)
     strips = np.where(known, above, 0.0).sum(axis=axis) / np.maximum(known.sum(axis=axis), 1)
     return np.asarray(strips), np.asarray(known.mean(axis=axis) >= SEEN)

@@ -117,7 +117,14 @@ class SideSurface:
 
     @classmethod
     def of(
-        cls, mean: Floats, count: Floats, variance: Floats, offset: Floats, worn: Bools, about: SideSurface | None = None
+        cls,
+        mean: Floats,
+        count: Floats,
+        variance: Floats,
+        offset: Floats,
+        worn: Bools,
+        about: SideSurface | None = None,
+        fewest: int = FEWEST_SEEN,
     ) -> SideSurface | None:
         """The surface through the means of cells; None where too few hold points.
 
@@ -135,9 +142,11 @@ class SideSurface:
             Cells that say how stiff the surface is.
         about : SideSurface or None
             What it is expected to be before its cells are seen, but for a level; None: flat.
+        fewest : int
+            Cells that must hold points for there to be a surface, and be worn to say alone how stiff it is.
         """
         seen = np.isfinite(mean)
-        if seen.sum() < FEWEST_SEEN:
+        if seen.sum() < fewest:
             return None
         weight = 1.0 / variance[seen]
         bands, eigenvalues = len(_laplacian(mean.shape)[0]), _laplacian(mean.shape)[2]
@@ -148,7 +157,7 @@ class SideSurface:
         value = value - level
 
         # As stiff as it is where it is worn: a hollow in a flat flank is steeper than the flank.
-        inside = worn[seen] if worn[seen].sum() >= FEWEST_SEEN else np.ones(len(weight), dtype=bool)
+        inside = worn[seen] if worn[seen].sum() >= fewest else np.ones(len(weight), dtype=bool)
         told = np.where(inside, weight, 0.0)
         banded, pull = _lower(_information(at, told), bands), at.T @ (told * value)
 

@@ -15,9 +15,9 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import SideMaps
-from gearwear.wear.cell_means import FEW, At, CellMeans, CommonSurface
+from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
 from gearwear.wear.made_apart import made_apart
-from gearwear.wear.surface import SideSurface
+from gearwear.wear.surface import FEWEST_SEEN, SideSurface
 from gearwear.wear.uncertainty import CellErrors, edge_covariance, ending_below, region_weights, torn_beyond
 from gearwear.wear.weights import SideWeights, by_side
 
@@ -233,11 +233,9 @@ class _Surfaces:
                 at = (*side, slice(None), part)
                 if not part.start and not wide[at].any():
                     continue
-                if part.start:
-                    about = common.get(side[1])
-                    surface = means.surface(at, wide[at], None if about is None else about.surface)
-                else:
-                    surface = _of_fillet(means, at, wide[at])
+                about = common.get(side[1]) if part.start else None
+                fewest = FEWEST_SEEN if part.start else FEWEST_OF_FILLET
+                surface = means.surface(at, wide[at], None if about is None else about.surface, fewest)
                 parts.append((i, part, surface))
                 if surface is not None and wide[at].any():
                     filled[at] = np.where(means.shown[at], filled[at], surface.value)
@@ -341,14 +339,6 @@ class _Errors:
             own[side[1], which, side[0]] += self.apart[side[1]] * values.sum(axis=(1, 2))
         own -= own.mean(axis=2, keepdims=True)  # about the mean of their side
         return np.asarray(level @ level.T + np.einsum("sik,sjk->ij", own, own), dtype=np.float64)
-
-
-def _of_fillet(means: CellMeans, at: At, wide: Bools) -> SideSurface | None:
-    """The surface of a fillet, as stiff as where it is worn if enough of it is, else as all of it; None where too few of its cells hold points."""
-    held = means.held[at]
-    if held.sum() < FEWEST_OF_FILLET:
-        return None
-    return means.surface(at, wide if (wide & held).sum() >= FEWEST_OF_FILLET else np.ones_like(wide))
 
 
 def unexplained_rms(loop: Loop | None) -> float:

@@ -53,7 +53,7 @@ def open_words(results: Results) -> str:
         return _too_faint(results)
     told = f"the loss may be {_limits(results)}"
     if results.wear.regions and _wide(results):
-        told = f"{_told_as(results)} is {_with_own_std(results)}"
+        told = f"{_told_as(results)[0]} is {_with_own_std(results)}"
     return f"the scan does not decide {question}: {told}"
 
 
@@ -78,7 +78,7 @@ def where_lost(results: Results) -> str:
     if open_:
         beside = f"{_limits(results)} are not excluded{why}"
         if _wide(results):
-            beside = f"{_told_as(results).removeprefix('the ').removesuffix(' it')} {_with_own_std(results)}{why}"
+            beside = f"{_told_as(results)[1]} {_with_own_std(results)}{why}"
     worn_thin = f"up to {up_to} if worn evenly to the measured thinning" if (up_to := _up_to(results)) else ""
     where = which_flanks(regions, results.wear.found, "seen")  # room is short beside a number
     return "; ".join(filter(None, (f"from {where}", beside, worn_thin)))
@@ -101,14 +101,15 @@ def _question(results: Results) -> str:
     return MEASURED_OR_WORN if not results.wear.regions and results.open_volume.measured_thinning > 0.0 else ""
 
 
-def _told_as(results: Results) -> str:
-    """What the value is, where it is open: of what was seen, or of flanks that stand out by themselves, or the likeliest of all."""
+def _told_as(results: Results) -> tuple[str, str]:
+    """What the value is, where it is open: of what was seen, or of flanks that stand out by themselves, or the likeliest of all; in a sentence, and beside
+    a number."""
     widest = results.open_volume.widest
     if widest is Open.UNSEEN:
-        return "where it was seen it"
+        return "where it was seen it", "where seen"
     if widest in (Open.SIDES, Open.FORM) and not results.measured.worn_sides:
-        return "on flanks that stand out it"
-    return "the likeliest"
+        return "on flanks that stand out it", "on flanks that stand out"
+    return "the likeliest", "likeliest"
 
 
 def _up_to(results: Results) -> str:
