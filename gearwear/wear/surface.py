@@ -4,13 +4,15 @@ The surface is a quadratic spline with one coefficient c to a cell and one beyon
 spline where they lie, y = B c + e with var e = 1 / W. Before anything is seen the surface bends and leans little: c is Gaussian with the precision
 of a spline in tension (Mitasova and Mitas 1993; as a Markov field: Rue and Held 2005, ch. 3),
 
-    Q = τ (κ² L + L²),   L the Laplacian of the coefficients, no flow over the edges; the level is free.
+    Q = τ (κ² L + L²),   L = s L_z + L_p / s,
 
-With A = Q + BᵀWB the expected surface is A⁻¹ BᵀW y. Stiffness τ and tension κ² are those of greatest restricted likelihood of the side itself,
+L_z and L_p the second differences of the coefficients along the face and along the profile, no flow over the edges; the level is free. What has the size
+1 along the profile has the size s along the face: sliding wear is alike along the face, scoring along the profile. With A = Q + BᵀWB the expected surface
+is A⁻¹ BᵀW y. Stiffness τ, tension κ² and stretch s are those of greatest restricted likelihood of the side itself,
 
     −2 log likelihood = log|A| − log|Q| + yᵀWy − yᵀWB A⁻¹ BᵀWy,   log|Q| over what Q penalises: the cosines of both ways.
 
-Few cells leave open how stiff the surface is: then every τ and κ² of the search counts with its share of the likelihood, and that their surfaces
+Few cells leave open how stiff the surface is: then every τ and κ² of the search counts with its share of the likelihood, s = 1, and that their surfaces
 differ is in what is not known.
 
 A volume is aᵀc. With u = A⁻¹ a it gives each cell's mean the weight W B u, through which the errors of the cells enter like those of every weighted
@@ -27,20 +29,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
-from scipy import sparse
+from scipy import fft, ndimage, sparse
 from scipy.linalg import cho_solve_banded
 from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpbtrf, dtbtrs
 
 from gearwear.arrays import Bools, Floats, Ints
 
-STIFFNESS = tuple(range(-8, 5))
-"""Decades of τ, in units of the cells' usual weight, among which is searched; then to half a one."""
+STIFFNESS = tuple(range(-10, 8))
+"""Decades of stiffness along the face and along the profile, in units of the cells' usual weight, among which is searched; then to half a one."""
+APART = 6
+"""Decades that they may differ by."""
 TENSION = (0.01, 0.1, 1.0)
 """κ² among which is searched: leaning counts as much as bending over 10, 3 and 1 cells."""
 DRAWS, PLACES = 200, 2
@@ -54,11 +59,50 @@ FEW_SEEN = 20
 LEAST_SHARE = 0.01
 """Likelihood, of that of the likeliest, below which a stiffness does not count."""
 
-_GRID = sorted(product(TENSION, map(float, STIFFNESS)), key=lambda at: (2.0 * at[1] + math.log10(at[0]), at))
-_DECADES = np.array([(decade, decade + math.log10(tension)) for tension, decade in _GRID])
-_SOFTER: Bools = np.asarray((_DECADES[:, None] < _DECADES + 1e-9).all(axis=2))
-"""All tensions and stiffnesses, from soft to stiff; the decades of τ and of τ κ² of each; and (i, j) whether none of the i-th is more than those of
-the j-th."""
+
+class Stiffness(NamedTuple):
+    """How stiff a surface is before its cells are seen.
+
+    Parameters
+    ----------
+    along, across : float
+        Decades of τ s² and τ / s², along the face and along the profile, in units of the cells' usual weight.
+    tension : float
+        κ².
+    """
+
+    along: float
+    across: float
+    tension: float
+
+    @property
+    def stiffness(self) -> float:
+        """τ, in units of the cells' usual weight."""
+        return float(10.0 ** (0.5 * (self.along + self.across)))
+
+    @property
+    def stretch(self) -> float:
+        """s."""
+        return float(10.0 ** (0.25 * (self.along - self.across)))
+
+    def near(self) -> list[Stiffness]:
+        """It and what is searched next to it: half a decade more or less either way, and another tension, about as stiff over a few cells."""
+        along, across, tension = self
+        near = [self, *(Stiffness(along + step, across, tension) for step in (-0.5, 0.5))]
+        near += [Stiffness(along, across + step, tension) for step in (-0.5, 0.5)]
+        near += [Stiffness(along + step, across - step, tension) for step in (-0.5, 0.5)]
+        for other, share in product(TENSION, (0.0, 0.5, 1.0)):
+            step = share * math.log10(tension / other)
+            near.append(Stiffness(along + step, across + step, other))
+        return [one for one in near if STIFFNESS[0] <= min(one[:2]) <= max(one[:2]) <= min(min(one[:2]) + APART, STIFFNESS[-1])]
+
+
+_ISOTROPIC = tuple(Stiffness(float(decade), float(decade), tension) for tension, decade in product(TENSION, STIFFNESS[2:-3]))
+_ALL = tuple(
+    Stiffness(float(along), float(across), tension)
+    for along, across, tension in product(STIFFNESS[::2], STIFFNESS[::2], TENSION)
+    if abs(along - across) <= APART
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +113,7 @@ class _AsStiff:
     ----------
     share : float
         Of the likelihood of all stiffnesses that count.
-    stiffness, tension : float
-        τ, mm⁻², and κ².
+    stiffness : Stiffness
     factor : (bands, n) float
         Cholesky factor of A, lower bands.
     expected : (n,) float
@@ -78,8 +121,7 @@ class _AsStiff:
     """
 
     share: float
-    stiffness: float
-    tension: float
+    stiffness: Stiffness
     factor: Floats
     expected: Floats
 
@@ -149,7 +191,6 @@ class SideSurface:
         if seen.sum() < fewest:
             return None
         weight = 1.0 / variance[seen]
-        bands, eigenvalues = len(_laplacian(mean.shape)[0]), _laplacian(mean.shape)[2]
         at, usual = _at_points(seen, offset, count), float(np.median(weight))
         before = np.zeros(at.shape[1]) if about is None else about.expected + about.level
         value = mean[seen] - at @ before
@@ -159,23 +200,26 @@ class SideSurface:
         # As stiff as it is where it is worn: a hollow in a flat flank is steeper than the flank.
         inside = worn[seen] if worn[seen].sum() >= fewest else np.ones(len(weight), dtype=bool)
         told = np.where(inside, weight, 0.0)
-        banded, pull = _lower(_information(at, told), bands), at.T @ (told * value)
+        bands, pull = 2 * min(_coefficients(mean.shape)) + 3, at.T @ (told * value)
+        banded = _lower(_information(at, told), bands)
 
-        def freedom_and_fit(tension: float, decade: float) -> tuple[float, float]:
-            triangle = _cholesky(_prior(mean.shape, usual * 10.0**decade, tension) + banded)
+        def cost(stiffness: Stiffness) -> float:
+            triangle = _cholesky(_prior(mean.shape, usual, stiffness) + banded)
             half = dtbtrs(triangle, pull, uplo="L")[0]
-            own = float(np.log(usual * 10.0**decade * eigenvalues * (tension + eigenvalues)).sum())
-            return 2.0 * float(np.log(triangle[0]).sum()) - own, float(half @ half)
+            own = float(np.log(usual * _penalised(_differences(mean.shape)[1], stiffness)).sum())
+            return 2.0 * float(np.log(triangle[0]).sum()) - own - float(half @ half)
 
-        likely = {likeliest(freedom_and_fit): 1.0} if inside.sum() >= FEW_SEEN else shares_of_likelihood(freedom_and_fit)
+        if inside.sum() >= FEW_SEEN:
+            likely = {likeliest(cost, likeliest_of_cosines(seen, value, usual)): 1.0}
+        else:
+            likely = shares_of_likelihood(cost)
         if not inside.all():
             banded = _lower(_information(at, weight), bands)
         ways = []
-        for (tension, decade), share in likely.items():
-            stiffness = usual * 10.0**decade
-            triangle = _cholesky(_prior(mean.shape, stiffness, tension) + banded)
+        for stiffness, share in likely.items():
+            triangle = _cholesky(_prior(mean.shape, usual, stiffness) + banded)
             expected = before + cho_solve_banded((triangle, True), at.T @ (weight * value), check_finite=False)
-            ways.append(_AsStiff(share, stiffness, tension, triangle, expected))
+            ways.append(_AsStiff(share, stiffness, triangle, expected))
         expected = _mean(ways, [way.expected for way in ways])
         value = (_over_cells(mean.shape) @ expected).reshape(mean.shape) + level
         return cls(value, seen, at, weight, tuple(ways), level)
@@ -254,7 +298,7 @@ class SideSurface:
         for way, half in zip(self.ways, np.split(random, ends[:-1], axis=1), strict=True):
             if not half.size:
                 continue
-            from_above = _cholesky(_prior(shape, way.stiffness, way.tension) + information)
+            from_above = _cholesky(_prior(shape, float(np.median(self.weight)), way.stiffness) + information)
             both = np.hstack([_from_below(way.factor, half), _from_below(from_above, half)[turned]])
             drawn.append(both + way.expected[:, None])
         return np.hstack(drawn)
@@ -265,44 +309,37 @@ def _mean(ways: Sequence[_AsStiff], values: Sequence[Floats]) -> Floats:
     return np.asarray(sum(way.share * value for way, value in zip(ways, values, strict=True)), dtype=np.float64)
 
 
-def shares_of_likelihood(
-    freedom_and_fit: Callable[[float, float], tuple[float, float]],
-) -> dict[tuple[float, float], float]:
-    """The share of the likelihood that each tension and decade of stiffness has among all of `TENSION` and `STIFFNESS`, expected alike before anything is
-    seen; those below `LEAST_SHARE` of the greatest are left out."""
-    cost = np.array([np.subtract(*freedom_and_fit(*at)) for at in _GRID])
-    likelihood = np.exp(-0.5 * (cost - cost.min()))
+def shares_of_likelihood(cost: Callable[[Stiffness], float]) -> dict[Stiffness, float]:
+    """The share of the likelihood that each stiffness and tension has that is the same both ways, expected alike before anything is seen, of a `cost` that
+    is −2 log likelihood; those below `LEAST_SHARE` of the greatest are left out."""
+    costs = np.array([cost(one) for one in _ISOTROPIC])
+    likelihood = np.exp(-0.5 * (costs - costs.min()))
     likelihood[likelihood < LEAST_SHARE] = 0.0
-    return {at: float(own / likelihood.sum()) for at, own in zip(_GRID, likelihood, strict=True) if own}
+    return {one: float(own / likelihood.sum()) for one, own in zip(_ISOTROPIC, likelihood, strict=True) if own}
 
 
-def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) -> tuple[float, float]:
-    """The tension and the decade of stiffness of least freedom less fit, among `TENSION` and `STIFFNESS`; then to half a decade.
+def likeliest(cost: Callable[[Stiffness], float], begin: Stiffness) -> Stiffness:
+    """The stiffness of less cost than all near it: from one to begin with to the first of those near it that costs less, as long as there is one."""
+    known, best = cache(cost), begin
+    while (less := next((one for one in best.near() if known(one) < known(best)), None)) is not None:
+        best = less
+    return best
 
-    A surface that is stiffer for every form, Q ≤ Q' as of matrices, has less freedom, log|A| − log|Q|, and fits less well. So what is between others that
-    are known has no less freedom than the stiffer and no more fit than the softer of them, and what cannot be the least is left out (branch and bound;
-    Land and Doig 1960). With Q = τ (κ² L + L²) the stiffer has no less τ and no less τ κ².
-    """
-    known = dict[tuple[float, float], tuple[float, float]]()
 
-    def cost(tension: float, decade: float) -> float:
-        if (tension, decade) not in known:
-            known[tension, decade] = freedom_and_fit(tension, decade)
-        freedom, fit = known[tension, decade]
-        return freedom - fit
+def likeliest_of_cosines(seen: Bools, value: Floats, weight: float) -> Stiffness:
+    """The stiffness that were the likeliest if all cells were seen alike: the cosines of their values are independent then, `value` (m,) of those that are
+    `seen` (rows, columns), and of the nearest of them elsewhere. Where to begin."""
+    number = np.zeros(seen.shape, dtype=np.int64)
+    number[seen] = np.arange(len(value))
+    nearest = ndimage.distance_transform_edt(~seen, return_distances=False, return_indices=True)
+    square = weight * fft.dctn(value[number[tuple(nearest)]], norm="ortho").ravel()[1:] ** 2
+    eigenvalues = [2.0 - 2.0 * np.cos(np.pi * np.arange(count) / count) for count in seen.shape]
 
-    freedom, fit = np.full(len(_GRID), -np.inf), np.full(len(_GRID), np.inf)
-    least, left = (math.inf, 0.0, 0.0), np.arange(len(_GRID))
-    following = [0, len(_GRID) - 1]  # between the softest and the stiffest is all
-    while len(left):
-        which = following.pop() if following else int(left[len(left) // 2])
-        least = min(least, (cost(*_GRID[which]), *_GRID[which]))
-        own = known[_GRID[which]]
-        freedom[_SOFTER[:, which]] = np.maximum(freedom[_SOFTER[:, which]], own[0])
-        fit[_SOFTER[which]] = np.minimum(fit[_SOFTER[which]], own[1])
-        left = left[(left != which) & (freedom[left] - fit[left] <= least[0])]
-    _, tension, decade = least
-    return min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=lambda at: cost(*at))
+    def cost(stiffness: Stiffness) -> float:
+        variance = 1.0 + 1.0 / _penalised((eigenvalues[0], eigenvalues[1]), stiffness)
+        return float((np.log(variance) + square / variance).sum())
+
+    return likeliest(cost, min(_ALL, key=cost))
 
 
 @lru_cache(maxsize=2)
@@ -398,22 +435,29 @@ def _over_cells(shape: tuple[int, int]) -> sparse.csr_array:
 
 
 @lru_cache(maxsize=8)
-def _laplacian(shape: tuple[int, ...]) -> tuple[Floats, Floats, Floats]:
-    """Lower bands of L and of L², as many as A has, and the eigenvalues of L but that of the level."""
-    short, long = sorted(_coefficients(shape))
-    laplacian = sparse.csr_array(
-        sparse.kron(sparse.eye_array(long), _path(short)) + sparse.kron(_path(long), sparse.eye_array(short))
-    )
-    number = min(2 * short + 3, short * long)
-    along, across = (2.0 - 2.0 * np.cos(np.pi * np.arange(n) / n) for n in (short, long))
-    eigenvalues = (along[:, None] + across).ravel()[1:]
-    return _lower(laplacian, number), _lower(sparse.csr_array(laplacian @ laplacian), number), eigenvalues
+def _differences(shape: tuple[int, ...]) -> tuple[Floats, tuple[Floats, Floats]]:
+    """L_z, L_p, L_z², 2 L_z L_p and L_p², (5, n, bands), as many bands as A has, the diagonal first; and the eigenvalues of L_z and of L_p."""
+    rows, columns = _coefficients(shape)
+    z = sparse.kron(_path(rows), sparse.eye_array(columns))
+    p = sparse.kron(sparse.eye_array(rows), _path(columns))
+    order, number = _numbers(shape).ravel(), min(2 * min(rows, columns) + 3, rows * columns)
+    bands = [_lower(sparse.csr_array(one), number, order).T for one in (z, p, z @ z, 2.0 * (z @ p), p @ p)]
+    eigenvalues = [2.0 - 2.0 * np.cos(np.pi * np.arange(count) / count) for count in _coefficients(shape)]
+    return np.stack(bands), (eigenvalues[0], eigenvalues[1])
 
 
-def _prior(shape: tuple[int, ...], stiffness: float, tension: float) -> Floats:
-    """Q, lower bands."""
-    lean, bend, _ = _laplacian(shape)
-    return np.asarray(stiffness * (tension * lean + bend), dtype=np.float64)
+def _prior(shape: tuple[int, ...], usual: float, stiffness: Stiffness) -> Floats:
+    """Q, lower bands, where the cells weigh `usual`."""
+    s, tension = stiffness.stretch, stiffness.tension
+    factors = usual * stiffness.stiffness * np.array([tension * s, tension / s, s**2, 1.0, s**-2])
+    return np.tensordot(factors, _differences(shape)[0], 1).T
+
+
+def _penalised(eigenvalues: tuple[Floats, Floats], stiffness: Stiffness) -> Floats:
+    """Eigenvalues of Q but that of the level, where the cells weigh 1; `eigenvalues` of L_z and of L_p."""
+    along, across = eigenvalues
+    both = (stiffness.stretch * along[:, None] + across / stiffness.stretch).ravel()[1:]
+    return np.asarray(stiffness.stiffness * both * (stiffness.tension + both), dtype=np.float64)
 
 
 def _path(number: int) -> sparse.csr_array:
