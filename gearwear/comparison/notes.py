@@ -31,7 +31,13 @@ UNLIKE = 2.0
 
 
 def notes_of(
-    design: Design, measured: MeasuredGear, wear: Wear, before: SameTeeth | None, pair: PairResult | None, ahead: Ahead | None
+    design: Design,
+    measured: MeasuredGear,
+    remarks: tuple[str, ...],
+    wear: Wear,
+    before: SameTeeth | None,
+    pair: PairResult | None,
+    ahead: Ahead | None,
 ) -> tuple[str, ...]:
     """All notes of a comparison, each a sentence.
 
@@ -40,6 +46,8 @@ def notes_of(
     design : Design
         As stated.
     measured : MeasuredGear
+    remarks : tuple of str
+        `MeasuredGear.remarks`.
     wear : Wear
     before : SameTeeth or None
         How the teeth of the scan before wear were told; None without one.
@@ -60,7 +68,7 @@ def notes_of(
         *load_left_out(design),
         *_no_forecast(pair, ahead),
         *_off_reference(gear),
-        *dict.fromkeys((*measured.remarks, *design.warnings)),  # an assumed root is said by both
+        *dict.fromkeys((*remarks, *design.warnings)),  # an assumed root is said by both
         *((HALVES,) if gear.spec.gap > 0.0 else ()),
         *(() if pair is not None else (alone(measured.context),)),
     )

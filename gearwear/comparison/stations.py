@@ -128,7 +128,7 @@ def compare(
         law = None if met is None else met.law
         laws = fit_laws(wear, points, scanned.as_made, measured.context, measured.loop, scanned.scatter, law)
         progress("thickness and inspection")
-        changes, (thickness, thicker), inspected, (solids, boolean), undecided = others()
+        changes, (thickness, thicker), inspected, (solids, boolean), undecided, remarks = others()
     pair = None if met is None else _pair(design, met, thickness)
     measured = in_accord(measured, wear, scanned.unworn is not None)
     return Results(
@@ -142,7 +142,7 @@ def compare(
         inspection=inspected[0] if len(inspected) == 1 else None,
         halves=inspected if len(inspected) == 2 else (),
         changes=(*changes, *thicker, *(() if met is None else met.changes)),
-        notes=notes_of(design, measured, wear, scanned.same, pair, ahead),
+        notes=notes_of(design, measured, remarks, wear, scanned.same, pair, ahead),
         before_files=() if scanned.unworn is None else tuple(name for scan in scanned.unworn.scans for name in scan.files),
         same_teeth=scanned.same,
         patterns=kept_patterns(measured),
@@ -247,7 +247,7 @@ class Lost:
 
 def _apart_from_contact(scanned: Scanned, lost: Lost, inspection: bool) -> list[Callable[[], Any]]:
     """Calls that need neither the contact nor one another: what the effects change of the wear, thickness with what they change of it,
-    inspection, solids, and the wear with other sides worn throughout."""
+    inspection, solids, the wear with other sides worn throughout, and remarks on the scan, for which neighbouring points are compared."""
     measured, unworn = scanned.measured, scanned.unworn
     left_in, quick = lost.effects if lost.taken_out else None, partial(scanned.find, limits=False, errors=False)
     return [
@@ -260,6 +260,7 @@ def _apart_from_contact(scanned: Scanned, lost: Lost, inspection: bool) -> list[
         partial(_inspected, measured, inspection),
         partial(_solid, measured, lost.worn, lost.wear),
         partial(_undecided, measured.undecided if unworn is None else ()),
+        lambda: measured.remarks,
     ]
 
 
