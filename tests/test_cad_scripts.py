@@ -91,6 +91,7 @@ def test_bore_and_keyway_leave_the_flanks_exact():
     assert made["part"].volume == pytest.approx((gear.section_area() - slot) * gear.face_width, rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_shaft_leaves_the_helical_flanks_exact():
     made, _ = in_viewer("helical_shaft.py")
     gear = made["gear"]
@@ -101,6 +102,7 @@ def test_the_shaft_leaves_the_helical_flanks_exact():
     assert made["part"].volume == pytest.approx(gear.section_area() * gear.face_width + shaft, rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_hub_leaves_the_flanks_exact():
     made, _ = in_viewer("gear_with_hub.py")
     gear = read_design(EXAMPLE).gears["gear"]

@@ -50,6 +50,7 @@ def test_either_half_is_what_its_own_rack_leaves(made):
     assert seen == len(points)
 
 
+@pytest.mark.long
 def test_a_valid_solid_of_the_exact_volume(made):
     gear, solid = made
     assert solid.is_valid
@@ -72,6 +73,7 @@ def middle(spec: GearSpec) -> float:
     return 0.25 * (spec.face_width + spec.gap)
 
 
+@pytest.mark.long
 def test_a_double_helical_pair_meshes_in_space():
     """Halves of different width: the pinion's end at other heights than its mate's, and still every tooth has its space."""
     spec = replace(SPEC, name="pinion", thinning=0.04, bore_diameter=0.0)

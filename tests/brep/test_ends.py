@@ -89,7 +89,7 @@ def test_a_valid_closed_solid_without_what_the_parallels_say(made):
         assert gear.volume - volume(shape) == pytest.approx(lost, rel=3e-6)  # by the polygon's chords
 
 
-@pytest.mark.parametrize("upper", [False, True], ids=["low", "high"])
+@pytest.mark.parametrize("upper", [pytest.param(False, marks=pytest.mark.long), True], ids=["low", "high"])
 def test_each_point_lies_at_its_depth_below_the_outline_at_its_height(made, upper):
     gear, _, solid = made
     size, width = gear.spec.end_edge, gear.face_width

@@ -56,6 +56,7 @@ def test_flanks_are_the_drawing_s(made):
     assert np.abs(along - drawn).max() < 1e-9
 
 
+@pytest.mark.long
 def test_a_valid_solid_of_the_exact_volume(made):
     gear, solid = made
     assert len(solid.solids()) == 1
@@ -63,6 +64,7 @@ def test_a_valid_solid_of_the_exact_volume(made):
     assert solid.volume == pytest.approx(gear.volume, rel=1e-10)
 
 
+@pytest.mark.long
 def test_relief_on_one_side_takes_off_what_it_says():
     """A profile slope of f on the left alone adds ∫ ½ f u · L dL / r_b a tooth: f (tip − form)² / 12 r_b by hand, and what the turned fillet loses."""
     f = 0.03

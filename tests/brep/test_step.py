@@ -69,6 +69,7 @@ def test_making_the_pair_leaves_the_solids_as_they_were(files, paper, tmp_path):
         assert (tmp_path / f"{part}.step").read_bytes() == files[part].read_bytes()
 
 
+@pytest.mark.long
 def test_the_pair_read_back_meshes(tmp_path):
     case = design(*THINNED)
     write_step(gear_pair(case), tmp_path / "pair.step")

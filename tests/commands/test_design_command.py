@@ -73,6 +73,7 @@ def test_span_pins_and_what_is_known(capsys):
     assert gear_of(text).spec.normal_module == pytest.approx(6.35)
 
 
+@pytest.mark.long
 def test_the_bundled_scan_leads_to_its_design(capsys, tmp_path):
     file = tmp_path / "new" / "design.toml"
     said = printed(capsys, EXAMPLE / "scan.ply.gz", "--out", file, "--part", "pinion")

@@ -231,6 +231,7 @@ def test_one_worn_tooth_cannot_be_taken_up(design):
     assert "no more play than designed" in apart.out.replace("\n", " ")
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("drawn")
 @pytest.mark.usefixtures("few_positions")
 def test_python_gives_what_the_command_writes(design):
@@ -324,6 +325,7 @@ def test_from_a_contact_ratio_of_two_on_no_pair_is_alone(tmp_path):
     assert [row["point"] for row in exact["sliding"]] == ["A", "C", "E"]
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("few_positions")
 def test_the_hunting_cycle_meets_every_pair(design, tmp_path):
     text = PAPER.replace("teeth = 24", "teeth = 25").replace("centre_distance = 114.3", "centre_distance = 117.6")
@@ -336,6 +338,7 @@ def test_the_hunting_cycle_meets_every_pair(design, tmp_path):
     assert len({pair for pair in pairs if pair[0] == "7"}) == 25
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("drawn")
 def test_the_curves_say_what_the_summary_says(design):
     contact = study(design, "--loss", 0.05, "--teeth", "1,2,3")["contact"]

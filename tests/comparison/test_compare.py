@@ -429,6 +429,7 @@ def test_a_wheel_worn_over_part_of_its_face_carries_on_the_rest(folder):
     assert study.contact.contact_ratio_on(study.exact.path) == pytest.approx(results.pair.contact_ratio, abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_scan_upside_down(folder):
     """Seen from its other end a gear turns the other way: left flanks are right ones, and teeth count backwards."""
     flipped = Rigid(np.diag([1.0, -1.0, -1.0]), np.array([5.0, -7.0, 40.0]))

@@ -50,6 +50,7 @@ def test_coat_and_volumes_come_out_however_it_lies(upside_down):
     assert upper.centroid[2] > GEAR.width - GEAR.lower.width and lower.centroid[2] < GEAR.lower.width
 
 
+@pytest.mark.long
 def test_the_pose_is_known_in_all_six_ways_without_end_faces():
     cloud = double_scan(GEAR, 20_000, seed=3, faces=False)
     registration = gw.register(Design({"gear": designed(GEAR)}), gw.as_scan(cloud.points)).placed.registration

@@ -48,6 +48,7 @@ def test_what_was_put_in_is_named_alone_within_two_standard_deviations():
         assert found[name].alternatives == ()
 
 
+@pytest.mark.long
 def test_the_volume_is_that_of_the_patch():
     _, wear = compared()
     (region,) = wear.regions

@@ -22,6 +22,7 @@ def pair() -> Design:
     return Design({"pinion": pinion, "gear": designed(RING)}, PairSpec())
 
 
+@pytest.mark.long
 def test_sliding_is_nothing_at_the_pitch_point_and_that_of_the_velocities_beside_it():
     """K1 = 1 − v2 / v1: the ends of the rolls move along the common normal's square with ω L, both the same way round."""
     design = pair()

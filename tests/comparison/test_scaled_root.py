@@ -21,6 +21,7 @@ AS_CUT = PINION.rack_tip_radius
 OUT_OF_LIMITS = "more than a calibrated scanner may be off by"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("ppm", "drawn"),
     [

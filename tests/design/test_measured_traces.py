@@ -27,6 +27,7 @@ def profile(deviation, tooth=1, flank="left", z="", rolls=(0.5, 12.0, 26.5)):
     return [f"pinion,profile,{tooth},{flank},{roll},{z},{deviation(roll):.9f}" for roll in rolls]
 
 
+@pytest.mark.long
 def test_a_uniform_loss_lags_by_itself_in_contact(tmp_path, design):
     """All left flanks 100 µm down: the transmission error of rigid contact is −100 µm, exactly and everywhere."""
     rows = [row for tooth in range(1, 13) for row in profile(lambda roll: -100.0, tooth)]

@@ -126,7 +126,7 @@ def test_points_moved_along_normals_come_back(spec):
         np.testing.assert_allclose(found.deviation, moved, atol=2e-8)
 
 
-@pytest.mark.parametrize("name", ["usual", "few teeth", "many teeth"])
+@pytest.mark.parametrize("name", ["usual", "few teeth", pytest.param("many teeth", marks=pytest.mark.long)])
 def test_the_solid_is_the_design(name, tmp_path):
     gear = Gear.from_spec(SPREAD[name])
     solid = gear_solid(gear)
@@ -135,6 +135,7 @@ def test_the_solid_is_the_design(name, tmp_path):
     assert solid.volume == pytest.approx(gear.volume, rel=1e-9)
 
 
+@pytest.mark.long
 def test_end_chamfers_go_with_it():
     gear = Gear.from_spec(_spec(end_chamfer=0.3))
     assert gear_solid(gear).is_valid

@@ -78,7 +78,7 @@ def test_area_by_the_polygon(spec):
     assert sharp.section_area() - gear.section_area() == pytest.approx(2.0 * gear.teeth * corner, rel=1e-5)
 
 
-@pytest.mark.parametrize("name", ["spur", "helical"])
+@pytest.mark.parametrize("name", ["spur", pytest.param("helical", marks=pytest.mark.long)])
 def test_the_solid_has_the_rounding(name):
     gear = Gear.from_spec(SPREAD[name])
     solid = gear_solid(gear)
@@ -87,6 +87,7 @@ def test_the_solid_has_the_rounding(name):
     assert [edge.name for edge in tooth_edges(gear)].count("rounding") == 2
 
 
+@pytest.mark.long
 def test_with_tip_relief_and_with_end_chamfers():
     relieved = FlankModification(tip_relief=0.02, tip_relief_length=2.0)
     for gear in (Gear.from_spec(_spec(left=relieved, right=relieved)), Gear.from_spec(_spec(end_chamfer=0.2))):

@@ -41,6 +41,7 @@ def test_pitch_and_thickness_are_the_index_of_left_and_of_right_flanks():
     assert np.abs(left[flank]).max() < 1e-9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [3, pytest.param(4, marks=pytest.mark.long), pytest.param(5, marks=pytest.mark.long)])
 def test_left_and_right_pitch_of_their_own_are_no_error_of_the_table(seed):
     """They were a wave of the table, a view that turned and a drift, and taken out of the pitch."""

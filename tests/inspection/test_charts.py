@@ -183,7 +183,8 @@ def test_values_of_bars_touch_neither_bar_nor_whisker(teeth):
 
 
 @pytest.mark.parametrize(
-    ("axis", "said"), [("bore", "about the axis of the bore."), ("teeth", "takes their common eccentricity")]
+    ("axis", "said"),
+    [pytest.param("bore", "about the axis of the bore.", marks=pytest.mark.long), ("teeth", "takes their common eccentricity")],
 )
 def test_the_pitch_chart_says_about_which_axis_it_is(found, axis, said):
     about = replace(found, notes=inspect(flanks(found.gear, 20, 6), found.gear, Settings(axis=axis, laboratory=False)).notes)
@@ -212,6 +213,7 @@ def test_an_empty_inspection_is_drawn_as_such(found, pinion):
     topography_chart(Figure(), empty, 0)
 
 
+@pytest.mark.long
 def test_many_teeth_take_more_rows(wheel):
     points = flanks(wheel, 30, 10)
     found = inspect(points.with_deviation(np.random.default_rng(0).normal(0.0, 0.003, len(points))), wheel)

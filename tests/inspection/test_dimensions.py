@@ -187,7 +187,7 @@ def drawn(**modification):
 
 
 @pytest.mark.parametrize(
-    "modification", [{"profile_slope": 0.04}, {"profile_crowning": 0.04}, {"tip_relief": 0.03, "tip_relief_length": 9.0}, {"helix_crowning": 0.04}]
+    "modification", [pytest.param({"profile_slope": 0.04}, marks=pytest.mark.long), pytest.param({"profile_crowning": 0.04}, marks=pytest.mark.long), {"tip_relief": 0.03, "tip_relief_length": 9.0}, pytest.param({"helix_crowning": 0.04}, marks=pytest.mark.long)]
 )  # fmt: skip
 def test_gauges_read_modified_flanks_as_they_are(modification):
     """A gear made as drawn, and gauges laid on its outline by their definitions: a plate is a tangent, a pin touches a circle."""

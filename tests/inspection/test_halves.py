@@ -45,6 +45,7 @@ def test_helix_slopes_are_those_of_the_half(half, slope):
     assert found.dimensions.thickness.value == pytest.approx(GEAR.tooth_thickness, abs=2e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("half", [pytest.param(Half.LOWER, marks=pytest.mark.long), Half.UPPER])
 def test_an_unsure_pose_is_as_unsure_in_the_frame_of_a_half(half):
     rng = np.random.default_rng(1)

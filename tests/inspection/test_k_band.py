@@ -61,6 +61,7 @@ def test_the_total_deviation_is_what_a_straight_band_asks(pinion):
     assert found.helix.k.count(0) == {BandVerdict.INSIDE: 12}
 
 
+@pytest.mark.long
 def test_noise_makes_it_unresolvable_and_never_wrong():
     band = KBand.straight(WHERE, 0.010)
     quiet = 0.004 * (STATION - 12.0) / 20.0

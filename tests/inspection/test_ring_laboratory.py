@@ -42,6 +42,7 @@ def scattered(ring: Gear, shape, count: int = 50_000) -> FlankSamples:
     return FlankSamples(ring, flank, place, z, shape(flank, place, z) + rng.normal(0.0, NOISE, count), NOISE, 0)
 
 
+@pytest.mark.long
 def test_sections_and_surfaces_are_those_put_in():
     """A twisted flank: each line has the slope of its place, whichever way lengths of roll run."""
     ring, profile, helix = HELICAL, profile_range(HELICAL), helix_range(HELICAL)
@@ -87,6 +88,7 @@ def rolled(ring: Gear, deviation):
     return evaluate_composite(ring, evaluate(traces, profile), evaluate_areal(samples, profile, helix, 0.0))
 
 
+@pytest.mark.long
 def test_eccentricity_alone_reads_twice_itself():
     """F_i″ = 2e and F_i′ = 2e / cos α; the master is closest where the ring is nearest to it: opposite to where it was moved."""
     e, towards = 30 * UM, np.array([math.cos(0.7), math.sin(0.7), 0.0])
@@ -115,6 +117,7 @@ def test_one_thick_tooth_brings_the_master_closer(sides):
     assert jump == pytest.approx(sides * d / (2 * math.sin(alpha)), rel=2e-2)
 
 
+@pytest.mark.long
 def test_flanks_of_a_helical_ring_that_all_stand_out_lead_by_as_much():
     """Evenly more metal on all flanks is no composite deviation at all, but a closer master."""
     found = rolled(HELICAL, lambda points: np.full(len(points), 10 * UM * HELICAL.base_helix_cosine))

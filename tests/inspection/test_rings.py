@@ -41,6 +41,7 @@ def inspected(**settings):
     return inspect(points.with_deviation(RING.base_helix_cosine * transverse), RING, Settings(noise=0.001, **settings))
 
 
+@pytest.mark.long
 def test_slopes_rise_towards_the_tip_and_with_the_angle():
     found = inspected()
     form, tip = profile_ends(RING)
@@ -53,6 +54,7 @@ def test_slopes_rise_towards_the_tip_and_with_the_angle():
     assert np.abs(found.profile.form.value).max() < 1e-4
 
 
+@pytest.mark.long
 def test_pitch_and_thickness_of_the_tooth_that_is_too_thick():
     """Its left flank lies further on, its right one further back, by δ / cos α_t of arc; r / r_b on the reference circle."""
     found = inspected()
@@ -104,6 +106,7 @@ def test_between_balls_is_that_of_the_ring_with_thinner_teeth(angle):
     assert other.centre_radius > pins.centre_radius  # the ball goes deeper into the wider space
 
 
+@pytest.mark.long
 def test_a_tooth_too_thick_lifts_the_balls_beside_it():
     found = inspected()
     assert found.runout is not None

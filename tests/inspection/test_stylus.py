@@ -127,6 +127,7 @@ def test_against_a_helical_flank_the_ball_is_that_against_its_normal_section(int
     assert found.min() == pytest.approx(-(ball - math.sqrt(ball**2 - 0.25 * width**2)) / cosine, rel=0.02)
 
 
+@pytest.mark.long
 def test_a_helix_trace_is_as_long_as_the_helix_at_its_radius():
     gear = Gear.from_spec(GearSpec("gear", 20, 3.0, 20.0, helix_angle=math.radians(30.0)))
     z, width, radius = np.linspace(0.0, 20.0, 2001), 1.2, 1.0

@@ -41,6 +41,7 @@ def elastic() -> PairCompliance:
     return pair_compliance(nominal_profiles(one), nominal_profiles(two))
 
 
+@pytest.mark.long
 def test_lines_of_constant_length_wear_as_archards_law_says():
     """Whole overlap on an even bed: every line carries F / (ε_α b), so the normal depth is k N F / (ε_α b) |K|."""
     pair = gears()
@@ -78,6 +79,7 @@ def test_the_volume_is_that_of_force_and_way_slid(elastic, gap):
     assert lost == pytest.approx(wanted, rel=0.01)
 
 
+@pytest.mark.long
 def test_the_other_hand_on_the_other_side_is_the_mirror_image(elastic):
     other = gears(-BETA)
     mirrored = pair_compliance(*map(nominal_profiles, other))
@@ -87,6 +89,7 @@ def test_the_other_hand_on_the_other_side_is_the_mirror_image(elastic):
     assert left.depth[0].mean() > 1.5 * left.depth[-1].mean()  # + opens towards the upper end, which carries less
 
 
+@pytest.mark.long
 def test_a_hardly_helical_pair_wears_as_a_spur_pair():
     """At 0.01° the phase over the face is 0.0004 of a pitch; depths differ by as little, but for cells that a corner just reaches."""
     spur, hardly = gears(0.0, 18.0), gears(math.radians(0.01), 18.0)
@@ -95,6 +98,7 @@ def test_a_hardly_helical_pair_wears_as_a_spur_pair():
     assert np.abs(straight.depth - helical.depth).mean() < 0.01 * straight.depth.mean()
 
 
+@pytest.mark.long
 def test_depths_do_not_hang_on_the_number_of_slices(elastic):
     """In strips a twelfth of the flank wide, as the second loop has them, mean over the face, 6 slices against 24: 3 % of the mean depth."""
     coarse, fine = (run(gears(), elastic, 8e-3, slices=n, positions_per_pitch=32).depth.mean(axis=0) for n in (6, 24))

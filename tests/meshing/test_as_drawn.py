@@ -49,6 +49,7 @@ def test_crowning_across_the_face_leaves_the_middle_carrying():
     assert error(pinion(helix_crowning=0.02, end_relief=0.02, end_relief_length=4.0)) < 1e-6
 
 
+@pytest.mark.long
 def test_a_slope_of_the_profile_makes_a_saw_of_its_rise_over_a_pitch():
     """δ₀ rises by f over the flank; with one pair in, the lead changes by f times base pitch over the flank's roll, at most."""
     f, gear = 0.012, pinion(profile_slope=0.012)

@@ -40,9 +40,14 @@ def turned(polygon, angle, shift=0.0):
 @pytest.mark.parametrize(
     "make",
     [
-        lambda pinion, wheel: (rough(design(pinion), 11, 0.05), rough(design(wheel), 12, 0.05)),
+        pytest.param(
+            lambda pinion, wheel: (rough(design(pinion), 11, 0.05), rough(design(wheel), 12, 0.05)), marks=pytest.mark.long
+        ),
         lambda pinion, wheel: (wear(design(pinion), 1.872, [0]), design(wheel)),
-        lambda pinion, wheel: (wear(design(pinion), sliding_like, [0, 1]), wear(design(wheel), 0.3, [0, 23])),
+        pytest.param(
+            lambda pinion, wheel: (wear(design(pinion), sliding_like, [0, 1]), wear(design(wheel), 0.3, [0, 23])),
+            marks=pytest.mark.long,
+        ),
     ],
     ids=["rough", "one tooth worn away", "both worn"],
 )
@@ -69,6 +74,7 @@ def test_sections_touch_and_do_not_overlap(pinion, wheel, make):
             assert overlap(behind) < 3e-6
 
 
+@pytest.mark.long
 def test_a_dense_look_finds_nothing_more(pinion, wheel):
     """The search between samples against a hundred thousand samples, on flanks as rough as a scan."""
     own, mate = rough(design(pinion), 21), rough(design(wheel), 22)
@@ -94,6 +100,7 @@ def test_a_dense_look_finds_nothing_more(pinion, wheel):
         assert found - max(lead) < 1e-4
 
 
+@pytest.mark.long
 def test_result_does_not_depend_on_the_radii(pinion, wheel):
     """Wear linear in the radius is the same on any radii, and fine ones find what coarse ones find."""
     results = []
@@ -115,6 +122,7 @@ def bulged(gear, start, end, size, random):
     return replace(own, half_angle=own.half_angle + shape / gear.base_radius)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("side", [Side.LEFT, pytest.param(Side.RIGHT, marks=pytest.mark.long)])
 def test_small_gentle_deviations_agree_with_the_linear_model(pinion, wheel, side):
     """Contact moves by R δ' along the flank, which adds R δ'²/2: the models part with the square of the size."""
@@ -145,6 +153,7 @@ def test_linear_model_needs_a_pair_at_every_phase(pinion, wheel):
         linear_contact(design(pinion), design(wheel), 118.5)
 
 
+@pytest.mark.long
 def test_slices_are_independent_of_each_other(pinion, wheel):
     """The rigid pair leads by the greatest lead of its slices taken alone."""
     own, mate = rough(design(pinion, slices=3), 31), rough(design(wheel, slices=3), 32)

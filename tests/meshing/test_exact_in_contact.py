@@ -55,6 +55,7 @@ def contact(first, second, exact, side=Side.LEFT, positions=5):
     )
 
 
+@pytest.mark.long
 @settings(max_examples=8, deadline=None)
 @given(pairs(), st.sampled_from(list(Side)))
 def test_backlash_and_error_are_what_the_flanks_do(pair, side):
@@ -71,6 +72,7 @@ def test_backlash_and_error_are_what_the_flanks_do(pair, side):
         assert found.transmission_error.max() < 1e-3 * first.transverse_module, "nothing in the way: no flank runs ahead"
 
 
+@pytest.mark.long
 @settings(max_examples=15, deadline=None)
 @given(pairs())
 def test_contact_stays_on_the_active_profiles(pair):
@@ -87,6 +89,7 @@ def test_contact_stays_on_the_active_profiles(pair):
         assert low - tolerance <= radius.min() and radius.max() <= high + tolerance
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(pairs())
 def test_swapping_the_gears_swaps_everything(pair):
@@ -109,6 +112,7 @@ def test_swapping_the_gears_swaps_everything(pair):
     np.testing.assert_allclose(one.equivalent_radius, two.equivalent_radius, rtol=1e-9)
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(pairs(), st.floats(0.01, 0.4))
 def test_moving_apart_shortens_the_path_and_opens_everything(pair, further):
@@ -125,6 +129,7 @@ def test_moving_apart_shortens_the_path_and_opens_everything(pair, further):
     assert far.interference_pinion.penetration <= exact.interference_pinion.penetration + 1e-9 * first.transverse_module
 
 
+@pytest.mark.long
 @settings(max_examples=20, deadline=None)
 @given(pairs())
 def test_the_closest_distance_is_where_the_first_touch_is(pair):

@@ -21,6 +21,7 @@ def few_positions(monkeypatch):
     monkeypatch.setattr("gearwear.meshing.study.POSITIONS", 3)
 
 
+@pytest.mark.long
 def test_one_tooth_may_be_a_number():
     one, listed, other = (gw.study_meshing(DESIGN, loss=0.05, teeth=teeth) for teeth in (3, [3], np.int64(3)))
     assert one.worn == listed.worn == other.worn and one.worn.source.endswith("of tooth 3 of the pinion")

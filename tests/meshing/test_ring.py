@@ -221,7 +221,7 @@ def test_one_worn_tooth_is_felt_where_it_meshes():
     ("teeth", "tip"),
     [
         pytest.param((20, 72), 1.0, marks=pytest.mark.long),
-        ((17, 60), 1.0),
+        pytest.param((17, 60), 1.0, marks=pytest.mark.long),
         ((17, 60), 0.8),
         pytest.param((16, 48), 1.0, marks=pytest.mark.long),
     ],
@@ -297,6 +297,7 @@ def test_a_ring_that_drives_is_refused_by_name():
         mesh_contact(nominal_profiles(SPUR[1]), nominal_profiles(SPUR[0]), 52.0)
 
 
+@pytest.mark.long
 def test_a_measured_ring_is_read_back_and_meshed(tmp_path):
     """One right flank of the ring 20 µm off, through the file that compare writes: 20 µm of lag; the pinion's left flanks carry by themselves."""
     design = parse_design({**DESIGN, "pinion": {**DESIGN["pinion"], "helix_angle": 0.0}})
@@ -309,6 +310,7 @@ def test_a_measured_ring_is_read_back_and_meshed(tmp_path):
     assert study.contact.backlash_max.value - study.contact.backlash_min.value == pytest.approx(0.020, abs=1e-6)
 
 
+@pytest.mark.long
 def test_a_loss_on_the_ring_is_on_its_flanks_that_carry():
     """A uniform loss lags by itself whichever gear has it, and no shaft is said to move."""
     design = parse_design({**DESIGN, "pinion": {**DESIGN["pinion"], "helix_angle": 0.0}})

@@ -24,7 +24,7 @@ def few_positions(monkeypatch):
     monkeypatch.setattr("gearwear.meshing.study.POSITIONS", 3)
 
 
-@pytest.mark.parametrize("drawn", [{}, {"left": MODIFIED, "right": MODIFIED}])
+@pytest.mark.parametrize("drawn", [{}, pytest.param({"left": MODIFIED, "right": MODIFIED}, marks=pytest.mark.long)])
 def test_an_unworn_gear_has_lost_nothing(drawn):
     design = pair(**drawn)
     found = gw.study_meshing(design, gw.nominal_profiles(design.gears["pinion"]))

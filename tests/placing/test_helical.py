@@ -42,6 +42,7 @@ def left_over(cloud: Cloud, found: PlacedScan, design: Gear) -> tuple[np.ndarray
     return motion.apply(middle[None])[0] - middle, turn, motion.rotation[:2, 2]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("gear", SEEN)
 def test_a_known_motion_comes_back_within_its_own_deviations(gear):
     cloud, found, design = placed(gear)
@@ -69,6 +70,7 @@ def test_without_end_faces_the_screw_is_not_seen_and_the_rest_is(gear):
     assert np.abs(shift[:2]).max() < 2e-3
 
 
+@pytest.mark.long
 def test_moving_along_the_teeth_leaves_their_flanks():
     cloud, found, design = placed(RIGHT)
     pose = found.registration.pose

@@ -39,6 +39,7 @@ def placed(seed: int = 1, worn: bool = False) -> tuple[SyntheticScan, PlacedScan
     return scan, place([flat(scan)], GEAR, [None], planar=True)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scans", [4, pytest.param(16, marks=pytest.mark.long)])
 def test_three_motions_are_found_within_their_standard_deviations_and_no_more_are_claimed(scans):
     pulls = []

@@ -60,6 +60,7 @@ def plain(points: int = 8_000, seed: int = 1) -> SyntheticScan:
 class TestAcceptance:
     """Points with 10 µm of noise and strays, from no guess at all."""
 
+    @pytest.mark.long
     def test_a_worn_patch_turns_the_gear_by_less_than_a_tenth_of_a_micrometre(self):
         wear = (Patch(3, 1, 400.0, (37.0, 43.0), (2.0, 11.0)),)
         scan = make_scan(Recipe(pose="any", wear=wear, outliers=0.0005, lost=0.02).of_size(450_000), 1)
@@ -69,6 +70,7 @@ class TestAcceptance:
         assert abs(error(scan, found).turn) * RB < 1e-4
         assert (np.abs(pulls(scan, found)) < SURE).all()
 
+    @pytest.mark.long
     def test_drive_flanks_worn_throughout_turn_it_by_less_than_a_micrometre_and_are_named(self):
         scan = make_scan(Recipe(pose="any", wear=(SlidingWear(100.0, 1),), outliers=0.0005, lost=0.02).of_size(100_000), 2)
         found = register(scan.points, GEAR)
@@ -110,6 +112,7 @@ class TestStatedStandardDeviations:
         drawn = (np.random.default_rng(0).standard_t(11, (40_000, cls.SCANS)) ** 2).sum(axis=1)
         return np.quantile(drawn, [0.0005, 0.9995])
 
+    @pytest.mark.long
     def test_a_thousand_points_are_enough(self):
         for seed in range(8):
             scan = make_scan(PLAIN.of_size(1_000), seed)
@@ -154,6 +157,7 @@ def self_errors() -> tuple[float, float, float]:
     return abs(off.turn), float(np.linalg.norm(off.shift)), off.tilt
 
 
+@pytest.mark.long
 def test_a_face_seen_from_the_other_side_is_the_other_end():
     """One end face only, once towards +z and once away from it: the height comes from that face."""
     names = set()
@@ -202,6 +206,7 @@ def test_normals_of_the_file_may_point_either_way_or_be_wrong(kind):
     assert abs(np.linalg.norm(off.shift) - shift) < SETTLED
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("factor", [pytest.param(0.99, marks=pytest.mark.long), 1.01])
 def test_a_scan_of_another_size_is_laid_on_the_design_and_not_shrunk_to_it(factor):
     """Rigid: what a scale adds must still be there afterwards, at the tips and between the end faces."""
@@ -221,6 +226,7 @@ def test_a_scan_of_another_size_is_laid_on_the_design_and_not_shrunk_to_it(facto
 class TestUniformLoss:
     """The same loss on every flank of one side is a rotation of thinner teeth."""
 
+    @pytest.mark.long
     def test_it_is_said_and_the_doubt_covers_the_error(self):
         scan = make_scan(Recipe(pose="any", jitter=1.0, wear=(AbrasiveWear(60.0, 1),)).of_size(20_000), 1)
         found = register(scan.points, GEAR)

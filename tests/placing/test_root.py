@@ -37,7 +37,7 @@ def measured(drawn: GearNumbers = WHEEL):
     return laid_on(drawn, plain())
 
 
-@pytest.mark.parametrize("stated", [0.25, pytest.param(0.30, marks=pytest.mark.long), 0.38])
+@pytest.mark.parametrize("stated", [pytest.param(0.25, marks=pytest.mark.long), pytest.param(0.30, marks=pytest.mark.long), 0.38])
 def test_the_racks_tip_radius_is_found_whatever_the_design_says(stated):
     root = measured(replace(WHEEL, rack_tip_radius=stated)).root
     assert root.seen and not root.free
@@ -46,12 +46,14 @@ def test_the_racks_tip_radius_is_found_whatever_the_design_says(stated):
     assert ("a rack tip radius of 0.3" in root.words()) != root.fits_design
 
 
+@pytest.mark.long
 def test_a_wrong_dedendum_is_found_too():
     root = measured(replace(WHEEL, dedendum=1.30)).root
     assert not root.fits_design
     assert root.dedendum == pytest.approx(1.25, abs=0.005)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "effect",
     [
@@ -68,6 +70,7 @@ def test_what_scanner_and_maker_add_is_no_other_root(effect):
     assert root.fits_design, root
 
 
+@pytest.mark.long
 def test_a_root_that_no_round_rack_tip_makes_is_free():
     """Half the fillet filled up by a fifth of a millimetre, as a protuberance or grinding leaves it, on every tooth alike."""
     gear, located = designed(WHEEL), measured().located

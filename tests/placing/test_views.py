@@ -34,6 +34,7 @@ def seen(count: int, overlap: float) -> tuple[SyntheticScan, PlacedScan]:
 
 @pytest.mark.parametrize(("count", "overlap"), [(3, 0.5), pytest.param(4, 0.7, marks=pytest.mark.long)])
 class TestPartialViews:
+    @pytest.mark.long
     def test_every_view_is_where_it_was(self, count, overlap):
         """A view of five to seven teeth rests on as many flanks a side: its pulls follow a t distribution of some 9 degrees of freedom.
 
@@ -78,6 +79,7 @@ class TestPartialViews:
         assert np.ptp(per_tooth) / per_tooth.mean() < 0.05
 
 
+@pytest.mark.long
 def test_a_view_that_stands_proud_does_so_by_what_was_put_on_it():
     """Two whole scans, one with a coat of 12 µm: each is 6 µm off their mean, and each knows its own coat."""
     plain = make_scan(replace(RECIPE, pose="none").of_size(20_000), 1)
@@ -133,6 +135,7 @@ def test_views_of_one_gear_agree(count):
     assert not said_of(placed)
 
 
+@pytest.mark.long
 def test_the_order_of_the_points_changes_nothing():
     scan, placed = seen(3, 0.5)
     shuffled = [np.random.default_rng(4).permutation(points) for points in scan.views]

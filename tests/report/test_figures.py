@@ -231,6 +231,7 @@ def test_what_there_is_nothing_to_draw_of_is_told(axis):
         figures.greatest_depth(axis, law)
 
 
+@pytest.mark.long
 def test_the_legend_of_a_section_stands_below_its_words(monkeypatch, arrays):
     """Under the flat tooth of a ring, which is drawn low, it lay on them."""
     across = np.linspace(-4.0, 4.0, 60)

@@ -135,6 +135,7 @@ def test_a_gap_the_other_way_wears_the_flank_the_other_way_up():
     assert down.after.all == pytest.approx(up.after.all, rel=1e-3)
 
 
+@pytest.mark.long
 def test_between_runs_depths_are_linear_to_some_tenths_of_a_micrometre():
     runs, effect = shared_runs(), EFFECTS["misalignment"]
     assert isinstance(effect, RunEffect)

@@ -36,6 +36,7 @@ def traced(gap_um: float, stated_um: float) -> SecondLoop:
     return find_running(place, *law_basis_and_alone(place, replace(shared_runs(), map=place, stated=1e-3 * stated_um)))
 
 
+@pytest.mark.long
 def test_a_gap_that_is_there_as_stated_is_no_finding_and_is_run_on_with():
     found = traced(30.0, 30.0)
     assert found.effect("misalignment") is None and found.effect("elastic_sharing") is not None

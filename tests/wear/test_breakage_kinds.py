@@ -77,7 +77,7 @@ def measured(gear, cuts):
         pytest.param(SPUR_RING, "missing tooth", marks=pytest.mark.long),
         pytest.param(SPUR_RING, "broken corner", marks=pytest.mark.long),
         pytest.param(HELICAL_RING, "missing tooth", marks=pytest.mark.long),
-        (HELICAL_RING, "broken corner"),
+        pytest.param(HELICAL_RING, "broken corner", marks=pytest.mark.long),
     ],
 )
 def test_a_cut_is_named_with_its_volume(gear, kind):
@@ -88,7 +88,7 @@ def test_a_cut_is_named_with_its_volume(gear, kind):
     assert broken.std < 0.06 * broken.volume
 
 
-@pytest.mark.parametrize("kind", ["missing tooth", "broken corner"])
+@pytest.mark.parametrize("kind", [pytest.param("missing tooth", marks=pytest.mark.long), "broken corner"])
 def test_the_other_half_of_a_tooth_stands(kind):
     cut = broken_off(TWO, kind, upper=True)
     grid, (broken,) = measured(TWO, [cut])

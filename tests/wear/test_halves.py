@@ -100,6 +100,7 @@ def test_a_low_flank_may_have_lost_no_more_than_there_is_of_it():
     assert perhaps == pytest.approx(low * whole, rel=0.1)
 
 
+@pytest.mark.long
 def test_flanks_seen_from_end_to_end_of_both_halves_are_seen_whole():
     points = double_scan(TWO, 80_000, noise=0.005, seed=3).points
     measured = gw.register(Design({"gear": designed_double(TWO)}), gw.as_scan(points))

@@ -30,7 +30,7 @@ def test_rows_are_added_where_the_teeth_turn_far_between_them():
     assert (heights[0], heights[-1]) == (0.0, 30.0) and (np.diff(heights) > 0.0).all()
 
 
-@pytest.mark.parametrize("size", [0.5, 8.0])
+@pytest.mark.parametrize("size", [pytest.param(0.5, marks=pytest.mark.long), 8.0])
 def test_an_even_loss_takes_its_arc_everywhere(size):
     """d along the normal turns the flank by d / (r_b cos β_b), whatever the rows: the volume is the area between two sections times b."""
     cells = grid(size)

@@ -70,7 +70,7 @@ def test_the_solid_has_the_volume_of_the_depth(pinion, columns):
     assert (np.diff(node_radii(grid)) > 0.0).all()
 
 
-@pytest.mark.parametrize("depth", [0.02, 0.075, 0.3])
+@pytest.mark.parametrize("depth", [pytest.param(0.02, marks=pytest.mark.long), pytest.param(0.075, marks=pytest.mark.long), 0.3])
 def test_wear_goes_on_below_the_form_circle_of_an_undercut_gear(pinion, depth):
     """As the simulated part, which is made without any of this code, has it: by points on its outline."""
     grid = grid_of(pinion)

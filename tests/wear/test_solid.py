@@ -177,7 +177,7 @@ def _chord(radius: float, angle: float, steps: int) -> float:
     return 0.5 * radius**2 * (angle - steps * np.sin(angle / steps))
 
 
-@pytest.mark.parametrize("suffix", [".stl", ".3mf"])
+@pytest.mark.parametrize("suffix", [".stl", pytest.param(".3mf", marks=pytest.mark.long)])
 def test_another_reader_finds_the_same_volume(solid, suffix, tmp_path):
     for name, bodies in (("worn_gear", [solid.worn]), ("worn_volume", solid.bodies)):
         path = tmp_path / f"{name}{suffix}"

@@ -44,7 +44,12 @@ def deepest(located):
 
 @pytest.mark.parametrize(
     ("points", "seed", "share"),
-    [(20_000, 7, 0.01), (40_000, 4, 0.0), pytest.param(90_000, 5, 0.01, marks=pytest.mark.long), (90_000, 6, 0.003)],
+    [
+        (20_000, 7, 0.01),
+        (40_000, 4, 0.0),
+        pytest.param(90_000, 5, 0.01, marks=pytest.mark.long),
+        pytest.param(90_000, 6, 0.003, marks=pytest.mark.long),
+    ],
 )
 def test_the_deepest_wear_is_not_that_of_strays_nor_of_noise(points, seed, share):
     """Of thousands of windows of few points each, at 8 µm, the lowest lies 20 µm too deep by chance, and a stray by 0.15 to 0.5 mm."""
@@ -57,6 +62,7 @@ def test_the_deepest_wear_is_not_that_of_strays_nor_of_noise(points, seed, share
     assert 0.9 * DEPTH < depths[0] < 1.15 * DEPTH
 
 
+@pytest.mark.long
 def test_a_pit_of_many_points_is_the_deepest_wear():
     located, own = worn(120_000)
     square = (np.abs(located.position[:, 2] - 7.0) < 0.6) & (np.abs(located.roll - 1.1 * GEAR.reference_roll) < 0.9)

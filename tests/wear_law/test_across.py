@@ -17,7 +17,7 @@ def across(lean: float, std: float, freedom: float) -> AcrossFace:
     return AcrossFace(np.arange(4.0), np.full(4, 0.02), np.full(4, 1e-3), lean, std, 0.0, 1.0, freedom)
 
 
-@pytest.mark.parametrize("teeth", [3, 5, 12])
+@pytest.mark.parametrize("teeth", [3, pytest.param(5, marks=pytest.mark.long), 12])
 def test_teeth_that_lean_at_random_are_seldom_said_to_lean(teeth):
     """By 3 standard deviations of their own scatter 9.5 % of three teeth were, 4.0 % of five and 1.2 % of twelve."""
     leans = np.random.default_rng(5).normal(0.0, 0.02, (teeth, DRAWS))

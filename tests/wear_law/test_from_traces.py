@@ -113,6 +113,7 @@ def test_flanks_nobody_measured_give_no_law(tmp_path):
     assert not law["fitted"] and law["why_not"] == "no profile of the left flanks was measured"
 
 
+@pytest.mark.long
 def test_teeth_keep_their_numbers_and_a_free_level_gives_no_share(tmp_path):
     text = _write(tmp_path / "t.csv", 0.0, teeth=2).read_text()
     law = _law(text.replace(",profile,1,", ",profile,7,").replace(",profile,2,", ",profile,4,"), tmp_path)
@@ -166,6 +167,7 @@ rim_diameter = 160.0
 """
 
 
+@pytest.mark.long
 def test_the_command_fits_the_flanks_of_a_ring_that_face_the_pinions(tmp_path):
     """Left flanks of the pinion carry on right ones of its ring: 20 |K| µm off these, with K = 1 − z2 / z1 (L − T) / L of the ring's flank."""
     (tmp_path / "ring.toml").write_text(RING)

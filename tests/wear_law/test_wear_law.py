@@ -93,7 +93,7 @@ def test_the_wheels_flank_is_fitted_alike(pinion, wheel):
     assert fit.wear_coefficient(1e6, 100.0)[0] == pytest.approx(1e-10)
 
 
-@pytest.mark.parametrize("correlation", [0.0, 3.0])
+@pytest.mark.parametrize("correlation", [0.0, pytest.param(3.0, marks=pytest.mark.long)])
 def test_intervals_cover_the_truth_as_often_as_they_say(pinion, wheel, correlation):
     random, sd, runs = np.random.default_rng(5), 0.002, 400
     clean = law(pinion, wheel, TRUE * [2.0, 2.0, 2.0], "none")
@@ -110,7 +110,7 @@ def test_intervals_cover_the_truth_as_often_as_they_say(pinion, wheel, correlati
     assert (hits / runs < 0.92 + 3 * np.sqrt(0.0736 / runs)).all()
 
 
-@pytest.mark.parametrize("absent", [0, 1, 2])
+@pytest.mark.parametrize("absent", [pytest.param(0, marks=pytest.mark.long), pytest.param(1, marks=pytest.mark.long), 2])
 def test_intervals_are_rather_wide_where_a_term_is_absent(pinion, wheel, absent):
     random, runs = np.random.default_rng(6), 300
     true = np.where(np.arange(3) == absent, 0.0, 2.0 * TRUE)
@@ -172,6 +172,7 @@ def test_forecast_never_falls_and_its_band_never_narrows(pinion, wheel):
         assert (band.low <= band.value).all() and (band.value <= band.high).all()
 
 
+@pytest.mark.long
 def test_forecast_backlash_comes_to_what_exact_contact_finds_and_is_never_less(pinion, wheel):
     """All teeth worn by the forecast profile, run in rigid contact; corners that carry fade with the depth."""
     short = []

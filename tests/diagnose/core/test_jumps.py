@@ -76,6 +76,7 @@ def found(start: float, closure: float, seed: int) -> tuple[float, float]:
     return best - start, float(told)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("closure", [pytest.param(4e-4, marks=pytest.mark.long), 1.5e-4], ids=["sure", "less sure"])
 def test_the_place_of_a_seam_is_known_as_well_as_it_is_said(closure):
     """Begun anywhere: the errors in their own standard deviations are 1, within what 40 of them tell."""

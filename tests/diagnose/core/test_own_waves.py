@@ -45,6 +45,7 @@ def test_what_texture_makes_by_chance_adds_nothing_and_more_adds_what_is_beyond_
     np.testing.assert_allclose(beyond_texture(pulls, spread), (1.0 - 1.0 / 50.0) * 100.0 * spread)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("height", "least"), [pytest.param(0.0, 0.9, marks=pytest.mark.long), (0.01, 0.9)])
 def test_the_size_of_an_effect_holds_the_truth_on_gears_with_waves_of_their_own(height, least):
     """Waves of orders 2 to 5, alike in the mean, by chance in size and place on each side; without them the texture's ± alone."""
