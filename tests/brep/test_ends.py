@@ -189,6 +189,7 @@ def test_flanks_bent_where_they_leave_the_base_circle_are_refused_with_what_woul
     assert gear_solid(Gear.from_spec(replace(gear.spec, end_chamfer=0.0))).is_valid
 
 
+@pytest.mark.long
 def test_what_would_fit_is_right():
     said = "leaves no tip"
     spec = GearSpec("pinion", 24, 2.0, 10.0, helix_angle=0.3, end_chamfer=1.5)

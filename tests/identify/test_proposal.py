@@ -113,6 +113,7 @@ def test_a_published_shifted_gear_with_shortened_tips(teeth, tip, root, shift):
     assert found.shortening == pytest.approx(0.126667, abs=0.02)
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(
     teeth=st.integers(14, 150),
@@ -188,6 +189,7 @@ def test_a_shift_between_two_round_ones_is_offered_as_both(shift, told):
         assert found[1].profile_shift in standard
 
 
+@pytest.mark.long
 def test_what_is_left_out_early_is_not_among_the_best():
     """Asked for all there are, every one is worked out; the first of them are those that are worked out where few are asked for."""
     gear = Gear.from_spec(GearSpec("gear", 23, 2.0, 18.0, math.radians(25.0), profile_shift=0.37))

@@ -150,6 +150,7 @@ def test_a_shift_that_is_not_round_is_offered(numbers, bore, tmp_path, monkeypat
     assert bore or "Nothing else in use comes near" not in text
 
 
+@pytest.mark.long
 def test_a_wrong_scale_is_found_beside_a_bore():
     """Its width and bore are whole numbers in the drawing, and not in the scan."""
     numbers = GearNumbers(24, 2.5, 20.0, bore_diameter=30.0)

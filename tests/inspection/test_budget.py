@@ -65,6 +65,7 @@ def test_the_parts_are_the_whole(found):
         assert line.expanded == pytest.approx(whole, rel=1e-9)
 
 
+@pytest.mark.long
 def test_a_scale_makes_totals_unsure_as_type_b_and_forms_not():
     """On a flank whose slope is large already, a scale moves the total by s L_α as it does the slope; the form about its line it does not."""
     points, scale = flanks(GEAR, 60, 12), 1e-3
@@ -91,7 +92,7 @@ def test_spans_grow_with_the_scale(found):
         pytest.param(GearSpec("gear", 20, 3.0, 20.0), marks=pytest.mark.long),
         GearSpec("gear", 13, 3.0, 20.0, profile_shift=0.3),
         pytest.param(GearSpec("gear", 21, 3.0, 20.0, helix_angle=math.radians(20.0)), marks=pytest.mark.long),
-        GearSpec("gear", 40, 2.0, 20.0, internal=True),
+        pytest.param(GearSpec("gear", 40, 2.0, 20.0, internal=True), marks=pytest.mark.long),
     ],
     ids=["even", "odd", "helical", "ring"],
 )

@@ -115,6 +115,7 @@ def test_correlated_errors_widen_everything_by_the_root_of_the_factor(noisy, fou
     np.testing.assert_allclose(wide.dimensions.thickness.standard, 3.0 * found.dimensions.thickness.standard)
 
 
+@pytest.mark.long
 def test_a_scan_with_every_point_four_times_knows_no_more(noisy, found, pinion):
     fourfold = inspect(noisy.take(np.tile(np.arange(len(noisy)), 4)), pinion, Settings(noise=NOISE, sample_factor=4.0))
     once = inspect(noisy, pinion, Settings(noise=NOISE))

@@ -108,6 +108,7 @@ def test_sections_are_those_of_their_lines(gear, twisted):
     assert within(found.helix_twist.at(whole), 60 * UM).all()
 
 
+@pytest.mark.long
 def test_twist_by_two_lines_is_as_unsure_as_by_the_surface(gear):
     """An axis that may be tilted moves the sections near both ends apart: all three twists of a flank are wrong by the same, and say so."""
     profile, helix, tilt, middle = profile_range(gear), helix_range(gear), 3e-4, np.array([0.0, 0.0, 0.5 * gear.face_width])
@@ -122,6 +123,7 @@ def test_twist_by_two_lines_is_as_unsure_as_by_the_surface(gear):
         np.testing.assert_allclose(twist.standard, surface, rtol=0.02)
 
 
+@pytest.mark.long
 def test_a_section_sees_the_pit_on_it(gear, twisted):
     profile, helix = profile_range(gear), helix_range(gear)
     found = take_sections(twisted, profile, helix, profile.middle, NOISE)
@@ -195,6 +197,7 @@ def test_eccentricity_alone_reads_twice_itself(gear):
     assert float(found.double_tooth.value) == pytest.approx(2 * e * math.sin(math.pi / gear.teeth), rel=1e-2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drawn", [{"profile_crowning": 0.02}, pytest.param({"profile_slope": 0.02}, marks=pytest.mark.long)])
 def test_a_master_feels_the_same_part_whatever_its_drawing(drawn):
     """Flanks that are modified on purpose, and flanks that came out so: one part, and one reading."""
@@ -227,6 +230,7 @@ def test_one_thick_tooth_lifts_the_centre_by_its_thickness(gear, sides):
     assert jump == pytest.approx(sides * d / (2 * math.sin(alpha)), rel=1e-2)
 
 
+@pytest.mark.long
 def test_as_rigid_contact_of_the_same_flanks_with_the_master(gear):
     """The program's contact knows no line of action: it seeks the first touch of bodies. Crowned flanks, so that no corner carries; but little,
     for what leaves the line of action gains the square of the slope, (dδ/dL · r_b / L)² ρ / 2: 0.1 µm here."""

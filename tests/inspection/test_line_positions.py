@@ -18,7 +18,7 @@ GEAR = Gear.from_spec(GearSpec("gear", 20, 3.0, 20.0))
 NOISE = 0.004
 
 
-@pytest.mark.parametrize("lowest", [0.0, 10.0])
+@pytest.mark.parametrize("lowest", [pytest.param(0.0, marks=pytest.mark.long), 10.0])
 def test_lines_of_a_tilted_gear_seen_on_half_of_its_face_are_off_as_far_as_they_say(lowest):
     """An axis tilted about mid-face, by 20 µm over the face, moves no flank there; 20 points of each flank, from `lowest` on, tell of it.
 

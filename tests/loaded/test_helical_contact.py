@@ -70,6 +70,7 @@ def bed(of: Pair, q: float) -> PairCompliance:
     return PairCompliance((teeth[0], teeth[1]), STEEL, 0.0, hertz=False)
 
 
+@pytest.mark.long
 def test_without_load_it_is_rigid_contact(elastic):
     """On flanks of which no two are alike, in slices that rigid contact looks at too: short faces, whose ends are well worn."""
     pinion, gear = short = pair(face=8.0)
@@ -213,6 +214,7 @@ def test_the_spread_holds_how_wide_the_slices_are(helical, elastic):
     assert study.present.peak_to_peak == pytest.approx(study.design.peak_to_peak) and study.present.z.size == 15
 
 
+@pytest.mark.long
 def test_stiffness_by_iso_6336():
     """c_γ = c' (0.75 ε_α + 0.25) with c' = 0.8 c'_th C_B cos β of virtual teeth, method B of ISO 6336-1; good to some 15 %."""
     beta = math.radians(30.0)

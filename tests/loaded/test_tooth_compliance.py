@@ -77,6 +77,7 @@ def triangles(body: Gear, bore: float, roll: np.ndarray, fine: Fineness) -> np.n
     return STEEL.elastic_modulus * np.array(answer)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("bore", "change"),
     [
@@ -92,6 +93,7 @@ def test_roots_and_bores_count_as_by_triangles(bore, change):
     np.testing.assert_allclose(whole(found, roll), triangles(body, bore, roll, Fineness(4, 13, 14, 17, 12)), rtol=0.01)
 
 
+@pytest.mark.long
 def test_another_root_or_bore_gives_another_compliance():
     """What a formula in z and x alone could not say: both gears have 15 teeth without shift."""
     plain, sharp = gear(15), gear(15, rack_tip_radius=0.05, dedendum=1.4)
@@ -135,6 +137,7 @@ def test_finer_elements_change_little():
     assert coarse.shared == pytest.approx(fine.shared, rel=0.003)
 
 
+@pytest.mark.long
 def test_what_teeth_share_is_the_torsion_of_the_body_and_a_little_more():
     """The rim between the teeth gives way too; the smaller the bore, the more the torsion of the disc, a closed form, is all of it."""
     body, more = gear(20), []
@@ -144,6 +147,7 @@ def test_what_teeth_share_is_the_torsion_of_the_body_and_a_little_more():
     assert more == sorted(more, reverse=True) and 0.0 < more[-1] < 0.25
 
 
+@pytest.mark.long
 def test_it_goes_as_one_over_the_modulus_and_not_with_the_size():
     body, twice = gear(20), Gear.from_spec(GearSpec("gear", 20, 12.7, 30.0))
     found = tooth_compliance(body, STEEL, 20.0)
@@ -176,6 +180,7 @@ def test_the_smallest_helix_is_hardly_one():
     assert leaning.shared == pytest.approx(straight.shared, rel=1e-8)
 
 
+@pytest.mark.long
 def test_a_helical_body_is_twisted_and_pushed_along_its_axis():
     """Both closed forms, of a disc and of a tube sheared along its axis; the smaller the bore, the more they are all of it."""
     body, more = gear(20, helix_angle=math.radians(-35.0)), []

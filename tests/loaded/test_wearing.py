@@ -110,6 +110,7 @@ def test_a_misaligned_pair_wears_where_it_carries(pinion, wheel, elastic, aligne
     assert depth.mean() == pytest.approx(aligned[0].depth.mean(), rel=0.06)
 
 
+@pytest.mark.long
 def test_smaller_steps_change_little(pinion, wheel, elastic, aligned, monkeypatch):
     found = aligned[2]
     monkeypatch.setattr(wearing, "STEP_TO_LAG", 0.1)

@@ -108,6 +108,7 @@ def deepest_corner(pinion, gear, centre_distance):
     return deepest
 
 
+@pytest.mark.long
 def test_penetration_is_what_the_outlines_show():
     """Outlines are of whole gears, so both flanks of every tooth are in it; backlash keeps the coast flanks apart."""
     pinion, gear, at = deep_tip()

@@ -90,6 +90,7 @@ def test_an_overhang_that_nothing_wore_does_not_carry(part, rows):
     assert compared.backlash == pytest.approx(LOSS, abs=EXACT)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("part", ONE_ROLE)
 def test_under_load_such_a_pair_carries_all_over_the_common_face(part):
     design = wide(part)
@@ -112,6 +113,7 @@ def cut(profiles: ToothProfiles, gear: gw.Gear) -> ToothProfiles:
     return replace(profiles, gear=gear, z=profiles.z[inside] - off, half_angle=profiles.half_angle[:, :, inside])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("part", ONE_ROLE)
 def test_a_wide_gear_does_what_the_same_one_cut_to_the_common_face_does(part):
     whole, narrow = wide(part), pair(14.0, 14.0)
@@ -129,6 +131,7 @@ def test_a_wide_gear_does_what_the_same_one_cut_to_the_common_face_does(part):
     np.testing.assert_allclose(loads[0].z - 0.5 * loads[0].driver.face_width, loads[1].z - 7.0, atol=EXACT)
 
 
+@pytest.mark.long
 def test_both_measured_with_a_wide_pinion():
     whole, narrow = pair(20.0, 14.0), pair(14.0, 14.0)
     pinion, gear = (uneven(whole.gears[part], z, seed) for part, z, seed in (("pinion", np.arange(20) + 0.5, 3), ("gear", np.arange(28) / 2 + 0.25, 4)))  # fmt: skip
@@ -145,6 +148,7 @@ def test_the_linear_model_aligns_mid_faces_too():
     assert linear_contact(inside, flanks[1], design.centre_distance).transmission_error == pytest.approx(-LOSS, abs=EXACT)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "widths",
     [pytest.param((20.0, 40.0), marks=pytest.mark.long), pytest.param((40.0, 20.0), marks=pytest.mark.long), (20.0, 14.0)],
@@ -171,6 +175,7 @@ def wide_sloped(part: str) -> Design:
     return pair(*widths, drawn={part: FlankModification(helix_slope=0.02)})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sloped", ONE_ROLE)
 def test_what_one_gear_has_modified_shows_whichever_has_the_loss(sloped):
     """A slope of 20 µm takes 10 at one end of each flank: both flanks together leave 20 less of what a loss of 50 leaves."""

@@ -42,6 +42,7 @@ def laid_on(points: np.ndarray, teeth: int, module: float, pressure_angle: float
     return register(parse_design({"gear": gear}), as_scan(points)).notes
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("numbers", "degrees"),
     [

@@ -53,7 +53,7 @@ def test_errors_may_grow_with_the_slope():
     assert shared_errors(points.with_deviation(steep * errors)) == pytest.approx(1.0, abs=SURE)
 
 
-@pytest.mark.parametrize("number", [6, 16])
+@pytest.mark.parametrize("number", [6, pytest.param(16, marks=pytest.mark.long)])
 def test_means_over_neighbours_share_their_errors(number):
     """Nearest neighbours have all but a few points of the mean in common."""
     points, errors = flanks()

@@ -89,7 +89,7 @@ def test_what_stands_round_the_gear_does_not_move_it(name):
     np.testing.assert_allclose(other, own, rtol=0, atol=0.005)
 
 
-@pytest.mark.parametrize("written", [5.0, pytest.param(20.0, marks=pytest.mark.long), 30.0])
+@pytest.mark.parametrize("written", [pytest.param(5.0, marks=pytest.mark.long), pytest.param(20.0, marks=pytest.mark.long), 30.0])
 def test_a_face_width_that_the_end_faces_contradict_is_refused_with_the_right_one(written):
     line = refused(scan(), face_width=written)
     assert "the teeth of the scan are 15 mm wide" in line or "the teeth of the scan are 15.0" in line
@@ -119,11 +119,13 @@ def test_the_base_circle_is_the_scans_whatever_the_design_says(alpha, module):
     assert measured == pytest.approx(true, rel=0.003)
 
 
+@pytest.mark.long
 def test_the_base_circle_of_the_right_design_is_its_own():
     found = alone()
     assert base_radius(found.placed.located, found.gear) == pytest.approx(found.gear.base_radius, rel=2e-4)
 
 
+@pytest.mark.long
 def test_a_large_shift_is_another_gear_and_the_line_says_what_the_scan_looks_like():
     with pytest.raises(NotThisGear, match="not of this gear") as error:
         placed(scan(), profile_shift=0.3)
@@ -158,6 +160,7 @@ def test_tips_and_roots_are_where_the_scan_has_them_whatever_the_design_says(wro
     assert seen.root_radius == pytest.approx(6.35 * 4.75, abs=0.01)
 
 
+@pytest.mark.long
 def test_rims_nobody_saw_have_no_radius():
     flanks = example()[example()[:, 3] == FLANK]
     found = gw.register(gw.read_design(PAIR), gw.as_scan(flanks[::3, :3]))

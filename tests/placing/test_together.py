@@ -74,6 +74,7 @@ def test_a_scale_is_taken_out_of_the_view_that_has_it(number, ppm):
     assert abs(same_metal(placed, without_fault())) < 5.0
 
 
+@pytest.mark.long
 def test_the_pose_of_a_scaled_view_holds_for_its_points_without_the_scale():
     """A view far from its own origin: what is reported takes its points to where they lie without the fault, to what a pose is known."""
     far = good().views[1] + np.array([300.0, -200.0, 100.0])

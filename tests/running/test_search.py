@@ -113,6 +113,7 @@ def test_a_mate_made_ahead_has_a_base_pitch_by_so_much_the_greater(drawn: float)
         assert grown[0] - grown[1] == pytest.approx(ahead, rel=1e-6)
 
 
+@pytest.mark.long
 def test_teeth_that_lost_more_once_round_are_told_and_a_lean_that_only_goes_with_them_is_not():
     """Depths as 1 + 0.3 cos(θ − 60°): every tooth leans in proportion, which is no bent shaft."""
     angle = np.arange(12) * np.pi / 6.0

@@ -44,6 +44,7 @@ def with_patches(limits, share, random):
     return bin_points(LOCATED.with_deviation(deviation), GRID)
 
 
+@pytest.mark.long
 def test_patches_of_the_depth_stated_are_found():
     """96 patches of the stated mean depth and area anywhere on their flanks: refused at odds of 1 in 1,000 were 96 % of them found."""
     random, found, put = np.random.default_rng(7), 0, 0
@@ -74,7 +75,7 @@ def test_the_deepest_mean_of_a_patch_lies_below_its_depth_by_what_draws_say(look
     assert pytest.approx(deepest.std(), abs=0.03) == BEST_STD
 
 
-@pytest.mark.parametrize("share", [0.3, 0.6])
+@pytest.mark.parametrize("share", [0.3, pytest.param(0.6, marks=pytest.mark.long)])
 def test_what_is_too_faint_to_be_found_is_within_what_it_may_come_to(share):
     """Six patches of a share of the depth that is found, eight times: the missing part of the total lies within its limit at least as often as 19 of 20
     allows (odds of 1 in 1,000), and without any patch the limit is less than they come to."""

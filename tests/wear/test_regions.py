@@ -174,12 +174,14 @@ def test_two_places_of_one_flank_are_one_region_of_two_pieces():
     assert region.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
 
 
+@pytest.mark.long
 def test_drive_flanks_worn_throughout_are_each_a_region():
     scan, found = worn(60_000, 7, SlidingWear(100.0, 1))
     assert {(r.tooth, r.side) for r in found.regions} == {(tooth, 1) for tooth in range(12)}
     assert found.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
 
 
+@pytest.mark.long
 def test_wear_near_the_noise_is_not_seen_and_well_above_it_is():
     """A plateau of 5 × 7 mm: of a fifth of the limit it hides, of three times the limit it shows."""
     _, unworn = worn(30_000, 8)
@@ -225,6 +227,7 @@ def test_a_hollow_is_told_whatever_other_flanks_have():
     assert not hollowed_sides(cells[:2]).any()  # of four sides nothing is usual
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "numbers",
     [pytest.param(GearNumbers(24), marks=pytest.mark.long), GearNumbers(23, 2.0, 18.0, 25.0, 0.4, rack_tip_radius=0.2)],

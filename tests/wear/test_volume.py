@@ -96,6 +96,7 @@ def test_what_is_not_seen_weighs_on_what_is():
     assert not weights[0, 2, 1, :3].any()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seeds", [(2,), pytest.param(range(6), marks=pytest.mark.long)], ids=["one scan", "six scans"])
 def test_intervals_hold_the_truth_through_the_whole_chain(seeds):
     """A coat, a table that is off, texture longer than a cell: three patches a scan. The sum of squared pulls lies between the
@@ -204,6 +205,7 @@ def test_a_planar_section_loses_area():
     assert region.max_depth == pytest.approx(0.3, abs=0.01) and region.max_depth_std < 0.01
 
 
+@pytest.mark.long
 def test_an_unworn_gear_has_no_region():
     for seed in range(6):
         scan = make_scan(Recipe(jitter=1.0, noise_um=8.0, texture=Texture(4.0, 1.5), pose="none").of_size(20_000), seed)

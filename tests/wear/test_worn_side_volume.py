@@ -40,6 +40,7 @@ def worn_side(random, points=6, deepest=DEEPEST):
     return bin_points(ideal.with_deviation(deviation[seen]), grid), 0.5 * deepest * REACH * area * factor
 
 
+@pytest.mark.long
 def test_steep_wear_that_all_flanks_share_is_not_flattened():
     errors = []
     for seed in range(8):

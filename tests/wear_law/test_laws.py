@@ -78,6 +78,7 @@ def test_specific_sliding_is_the_references():
     np.testing.assert_allclose(found, [-4.89, -1.97, -0.943, 0.0, 0.414, 0.603, 0.758], rtol=0.0, atol=0.006)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("depth_um", [pytest.param(40.0, marks=pytest.mark.long), 150.0])
 def test_sliding_wear_without_a_mate_is_known_but_for_a_factor(depth_um):
     found = laws(worn(lambda tooth, side, roll: 1e-3 * depth_um * (side > 0) * sliding(roll, "archard")))
@@ -95,6 +96,7 @@ def test_sliding_wear_without_a_mate_is_known_but_for_a_factor(depth_um):
     )  # feet move with the wear
 
 
+@pytest.mark.long
 def test_cells_nobody_saw_say_nothing_of_a_law():
     """Two points a cell leave a tenth of them empty; filled from round them they would pass for uniform loss."""
     found = laws(worn(lambda tooth, side, roll: 0.150 * (side > 0) * sliding(roll, "archard")), fine=2)
@@ -151,6 +153,7 @@ def test_an_unworn_gear_follows_none():
     assert laws(worn(lambda tooth, side, roll: 0.0 * roll), worn_side=None) == {}
 
 
+@pytest.mark.long
 def test_the_generators_flanks_give_their_amplitude_back():
     """A whole scan, registered, its flanks running on below the form circle; an unlike tooth beside them."""
     wear = (SlidingWear(100.0, -1, (), "archard"), Patch(5, -1, 250.0, (37.0, 43.5), (-9.0, 24.0), 2.0))
@@ -161,6 +164,7 @@ def test_the_generators_flanks_give_their_amplitude_back():
     assert law.depth == pytest.approx(0.100, rel=0.02)
 
 
+@pytest.mark.long
 def test_both_sides_are_fitted_each_by_itself():
     wear = (AbrasiveWear(50.0, 1, (0, 1, 2, 3)), AbrasiveWear(30.0, -1, (6, 7, 8, 9)))
     scan = make_scan(Recipe(jitter=1.0, noise_um=1e3 * NOISE, wear=wear).of_size(60_000), 3)

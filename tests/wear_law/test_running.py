@@ -111,6 +111,7 @@ def test_the_mate_shows_in_the_profile(histories):
         assert weights[other].sum() >= 0.1 / 1.1 - 1e-9  # what the profile says of the mate is never taken for sure
 
 
+@pytest.mark.long
 def test_a_misaligned_pair_is_run_on_as_its_mean_over_the_face(monkeypatch):
     """Which end is open makes no difference to the mean; nor does misalignment where one pair carries alone: the force is the same."""
     monkeypatch.setattr(running, "MATE_RATES", (0.0,))

@@ -41,6 +41,7 @@ def test_what_explains_only_noise_falls_and_what_is_there_stands():
     assert stood(0.01 * U, (Toy("there"), U), (Toy("not there"), ZETA), (Toy("nor this"), U * ZETA)) == ({"there"}, [])
 
 
+@pytest.mark.long
 def test_of_nothing_nothing_stands():
     kept = [stood(0.0 * U, (Toy("a"), U), (Toy("b"), ZETA), (Toy("c"), SIGN * U), seed=seed)[0] for seed in range(20)]
     assert sum(map(len, kept)) == 0

@@ -80,6 +80,7 @@ def slid():
     return binned((SlidingWear(50.0, 1, law="archard", off=4.0),), points=10_000)
 
 
+@pytest.mark.long
 @PLAIN_AND_ALL
 def test_a_side_slid_about_another_pitch_point_is_found_worn(slid, effects):
     loop = close_loop(slid, noise(slid), make_context(slid, np.eye(3), False), effects)

@@ -57,7 +57,7 @@ def closed(wear, effects=(), seed=3):
     [
         pytest.param((SlidingWear(60.0, 1, law="archard"),), LEFT, marks=pytest.mark.long),
         ((SlidingWear(60.0, 1, law="archard"), SlidingWear(35.0, -1, law="archard")), BOTH),
-        (PATCHES, NO_SIDE),
+        pytest.param(PATCHES, NO_SIDE, marks=pytest.mark.long),
     ],
     ids=["left", "both", "patches"],
 )
