@@ -82,8 +82,9 @@ TOGETHER = (
         "running/test_as_drawn.py", "running/test_forecast.py", "running/test_other_side.py", "running/test_search.py", "running/test_stated.py",
         "running/test_thresholds.py",
     },
+    {"test_layers.py", "test_docstrings.py", "diagnose/test_one_place.py"},
 )  # fmt: skip
-"""Files that look at one costly result, the comparison of `tests.report.fake` or the runs of `tests.running.maps`: for one worker, which makes it once."""
+"""Files that look at one costly result, the comparison of `tests.report.fake`, the runs of `tests.running.maps` or the package parsed: for one worker, which makes it once."""
 
 
 @pytest.hookimpl(optionalhook=True)

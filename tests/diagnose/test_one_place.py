@@ -9,7 +9,7 @@ from pathlib import Path
 
 import gearwear
 from gearwear.diagnose.effects import catalogue
-from tests.layers import MAY_IMPORT, modules, room_of
+from tests.layers import MAY_IMPORT, modules, nodes, parsed, room_of
 
 NAMES = {effect.name for effect in catalogue()}
 PARAMETERS = {parameter.name for effect in catalogue() for parameter in effect.parameters}
@@ -35,7 +35,7 @@ def strings(node: ast.AST) -> list[str]:
 def tables(source: str) -> list[tuple[int, set[str]]]:
     """Line and names of every table of names."""
     found = []
-    for node in ast.walk(ast.parse(source)):
+    for node in nodes(parsed(source)):
         own = {text for text in strings(node) if text.isidentifier()}
         for known in (NAMES, PARAMETERS):
             if len(own & known) >= 2 and 2 * len(own & known) > len(own):
