@@ -13,7 +13,7 @@ from gearwear.comparison.results import PairResult
 from gearwear.comparison.same_teeth import SameTeeth
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.quantity import NORMAL_95, counted, number, significant
+from gearwear.design.quantity import NORMAL_95, counted, listed, number, significant
 from gearwear.design.side import Side
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FILLET, FLANK, TIP
@@ -59,6 +59,7 @@ def notes_of(
     return (
         *measured.doubts,  # what changes the meaning of numbers first: a terminal shows the first few
         *off_the_drawing(measured.loop),
+        *take_each_other_back(measured.loop),
         *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn) else ()),
         *worn_notes(measured, wear, unworn),
         *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
@@ -212,6 +213,18 @@ def off_the_drawing(loop: Loop | None) -> tuple[str, ...]:
                 f"the {name} is {off} mm {way} than the drawing's, whose tolerance is ± {number(allowed)} mm: taken as seen"
             )
     return tuple(said)
+
+
+def take_each_other_back(loop: Loop | None) -> tuple[str, ...]:
+    """Effects that fit together and are no finding, because of each the others take back most."""
+    back = [effect.name.replace("_", " ") for effect in loop.form if effect.evidence.taken_back] if loop is not None else []
+    if not back:
+        return ()
+    names = sorted(set(back))
+    return (
+        f"{listed(names)} fit best together, but of {'each' if len(names) > 1 else 'it'} the others take back most: no finding, what they leave"
+        " is a form that flanks have, or wear that all of them share",
+    )
 
 
 def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:

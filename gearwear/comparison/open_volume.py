@@ -156,17 +156,16 @@ class OpenVolume:
 
     @property
     def form_or_wear(self) -> float:
-        """What a form that all teeth have and no effect explains would come to were it wear, mm³; 0 where that is within the volume's standard
+        """What a form that all teeth have and no effect explains, or only effects that take each other back, would come to were it wear, mm³; 0 where that is within the volume's standard
         deviation, and where a scan of the gear unworn shows what was made so."""
-        if self.measured.loop is None or self.unworn_seen:
+        loop, grid = self.measured.loop, self.measured.cells.grid
+        if loop is None or self.unworn_seen:
             return 0.0
-        grid = self.measured.cells.grid
-        maps = self.found.side_maps
-        lost = common_loss(maps, grid.sides(self.measured.loop.form_of_all), grid.toothed, self.measured.worn_sides)
+        lost = common_loss(self.found.side_maps, grid.sides(loop.without_a_name), grid.toothed, self.measured.worn_sides)
         if lost <= self.found.volume_std:
             return 0.0
         # How high the sides stand that did not wear is known to that of their level.
-        return lost + NORMAL_95 * self._side_area * max(self.measured.loop.level_std)
+        return lost + NORMAL_95 * self._side_area * max(loop.level_std)
 
     @property
     def unsure_or_worn(self) -> float:

@@ -30,6 +30,7 @@ from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.space_waves import SpaceWave
+from gearwear.diagnose.taken_back import beside_pose, taken_back
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -176,6 +177,8 @@ class Loop(Card):
         Sides that beyond doubt are not worn throughout together, with the others sound (`SideCosts.ruled_out`).
     untold : UntoldFlanks or None
         Flanks that are no datum where every tooth has amounts of its own; None where each is.
+    together : (m,) float or None
+        What effects that take each other back do to the deviation of each cell together, beside the pose, mm; None where none do.
     """
 
     effects: tuple[FoundEffect, ...]
@@ -203,6 +206,7 @@ class Loop(Card):
     sides_sure: bool = False
     sides_ruled_out: frozenset[frozenset[Side]] = frozenset()
     untold: UntoldFlanks | None = None
+    together: Floats | None = None
 
     @property
     def undecided(self) -> tuple[frozenset[Side], ...]:
@@ -233,6 +237,11 @@ class Loop(Card):
     def form_of_all(self) -> Floats:
         """The form that all teeth have and no effect explains, mm, (m,)."""
         return form_of_all(self.patterns, len(self.residual_after))
+
+    @property
+    def without_a_name(self) -> Floats:
+        """The form that all teeth have and no effect explains, or only effects that take each other back, mm, (m,)."""
+        return self.form_of_all + (0.0 if self.together is None else self.together)
 
     def thinner_by(self, flanks: SurfacePoints) -> float:
         """By how much the effects of the maker lower every one of some points on flanks, mm: what an even loss would do as well."""
@@ -317,6 +326,7 @@ def account(
     noise : float
         Scatter of points, mm.
     """
+    evidence, together = _with_taken_back(fit, problem, model, evidence)
     order = _by_gain(problem, model)
     order.sort(key=lambda i: not _unnamed(model[i], evidence[i]))  # what the drawing leaves open first
     model, evidence = tuple(model[i] for i in order), [evidence[i] for i in order]
@@ -395,12 +405,29 @@ def account(
         made=made,
         others=(),
         correlations=correlations(known, joint),
+        together=together,
     )
 
 
 def _unnamed(candidate: Candidate, evidence: Evidence) -> bool:
-    """Whether an effect is no finding: open by the drawing, or faint."""
-    return candidate.effect.kind is Kind.FORM or evidence.faint
+    """Whether an effect is no finding: open by the drawing, faint, or taken back by others."""
+    return candidate.effect.kind is Kind.FORM or evidence.faint or evidence.taken_back
+
+
+def _with_taken_back(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence]) -> tuple[list[Evidence], Floats | None]:
+    """The evidence, with the effects that others take back, and what these do together; amounts of each tooth, and levels that the drawing leaves open,
+    take nothing back."""
+    at = [i for i, one in enumerate(model) if not (one.effect.tooth_specific or one.effect.kind is Kind.FORM)]
+    if len(at) < 2:
+        return evidence, None
+    amplitudes, parts = problem.gram.solve(problem.columns(model))[0], fit.parts(model)
+    fields = np.column_stack([fit.dictionary.take(model[i].columns) @ amplitudes[parts[i]] for i in at])
+    weight, points = np.where(fit.use, fit.covariance.weight, 0.0), fit.cells.points
+    fields = beside_pose(fields, fit.dictionary.take(fit.dictionary.pose), weight)
+    back = taken_back(fields, weight, points.surface)
+    told = dict(zip(at, back.tolist(), strict=True))
+    together = np.where(fit.cells.seen, fields[:, back].sum(axis=1), 0.0) if back.any() else None
+    return [replace(one, taken_back=told.get(i, False)) for i, one in enumerate(evidence)], together
 
 
 def _or_views(

@@ -42,6 +42,8 @@ class Evidence:
     accepted : bool
     faint : bool
         Whether it is told, but too small or not surely enough to be named; of a freedom, tooth by tooth or of the drawing, never.
+    taken_back : bool
+        Whether other effects of the model take back most of it.
     """
 
     statistic: float
@@ -56,6 +58,7 @@ class Evidence:
     size: float
     accepted: bool
     faint: bool = False
+    taken_back: bool = False
 
 
 def sandwich(columns: Floats, use: Bools, covariance: CellCovariance, inverse: Floats) -> Floats:

@@ -187,6 +187,20 @@ class Rules:
         "least contribution in units of the model's: below it the second order of a large effect looks like one of its own",
         off=0.0,
     )
+    left_of_it: float = rule(
+        0.5,
+        "1",
+        "tuned: of 41 scans of two generators named effects that are there keep 0.7 and more on some surface, false ones 0.4 and less",
+        "share of an effect that must be left once the others are added, on some surface: else they take each other back",
+        off=-math.inf,
+    )
+    surface_share: float = rule(
+        0.1,
+        "1",
+        "tuned, not varied",
+        "share of its square that an effect must have on a surface for that to speak for it",
+        off=0.0,
+    )
     more_parameters: int = rule(
         3,
         "parameters",

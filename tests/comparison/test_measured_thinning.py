@@ -44,7 +44,7 @@ def test_it_is_what_lies_between_two_gears_of_which_one_was_cut_thin(helix):
 def opened(spec, faces=(), before=False):
     """By hand: 10 ± 0.5 mm³ on flanks of 400 mm² a side, whose level is known to 1 and 2 µm."""
     grid = SimpleNamespace(toothed=np.ones(10, dtype=bool), gear=SimpleNamespace(teeth=20))
-    loop = SimpleNamespace(level_std=(0.001, 0.002), thinner_by=lambda flanks: 0.0, form_of_all=np.zeros(1))
+    loop = SimpleNamespace(level_std=(0.001, 0.002), thinner_by=lambda flanks: 0.0, without_a_name=np.zeros(1))
     measured = SimpleNamespace(
         cells=SimpleNamespace(grid=grid), gear=Gear.from_spec(spec), loop=None, layered=np.zeros(20, bool), worn_sides=frozenset(), faces=faces
     )  # fmt: skip

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import gearwear as gw
-from gearwear.comparison.notes import off_the_drawing
+from gearwear.comparison.notes import off_the_drawing, take_each_other_back
 from gearwear.comparison.placed_notes import SMOOTHED, smoothing_of
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
@@ -73,6 +73,16 @@ def test_a_dimension_beyond_its_tolerance_is_told():
     assert note == "the tip diameter is 0.42 mm less than the drawing's, whose tolerance is ± 0.19 mm: taken as seen"
     assert "0.25 mm more" in told(0.25, 0.001)[0]
     assert told(0.18, 0.001) == told(0.25, 0.05) == off_the_drawing(None) == ()
+
+
+def test_effects_that_take_each_other_back_are_told_as_no_finding():
+    def effect(name, back):
+        return SimpleNamespace(name=name, evidence=SimpleNamespace(taken_back=back))
+
+    form = (effect("tip_relief", True), effect("root_form", False), effect("profile_slope", True))
+    (note,) = take_each_other_back(SimpleNamespace(form=form))
+    assert note.startswith("profile slope and tip relief fit best together, but of each the others take back most: no finding")
+    assert take_each_other_back(SimpleNamespace(form=form[1:2])) == take_each_other_back(None) == ()
 
 
 def test_no_note_is_lost_or_said_twice():

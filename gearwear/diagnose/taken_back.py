@@ -1,0 +1,61 @@
+"""Effects of which the others take back most: together they describe a form, and none of them is a finding by itself.
+
+Beside a form that the catalogue does not have, wear of a whole side or of the coast flanks, a tip relief of 74 µm, slopes of 57 and 147 µm and a laser
+238 µm beside the axis may fit best, which on a flank leave some micrometres. Each stands out of its own ± by far: what tells is how much of it is there in
+their sum.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.surface import FILLET, FLANK
+from gearwear.diagnose.rules import rules
+
+
+def beside_pose(fields: Floats, pose: Floats, weight: Floats) -> Floats:
+    """What effects do to the deviation of cells, (m, k) mm, less what a motion of the scan takes up of it.
+
+    Parameters
+    ----------
+    fields : (m, k) float
+        mm.
+    pose : (m, p) float
+        What a motion of the scan does.
+    weight : (m,) float
+        Of the cells; 0 where one is not used.
+    """
+    root = np.sqrt(weight)[:, None]
+    return np.asarray(fields - pose @ np.linalg.lstsq(pose * root, fields * root)[0], dtype=np.float64)
+
+
+def taken_back(fields: Floats, weight: Floats, surface: Ints) -> Bools:
+    """Of which effects the others take back more than a share.
+
+    Parameters
+    ----------
+    fields : (m, k) float
+        What each effect does to the deviation of cells, beside the pose, mm.
+    weight : (m,) float
+        Of the cells; 0 where one is not used.
+    surface : (m,) int
+        Codes of `gearwear.design.surface`.
+
+    Returns
+    -------
+    (k,) bool
+        Whether on every surface that holds a `surface_share` of an effect less than `left_of_it` of it is in the sum of all: s f / f f, weighted.
+
+    Notes
+    -----
+    By surfaces, because others may hide an effect on one and show it on the next: a coat over teeth that were cut thin stands on tips and roots. Flanks
+    and fillets are one: they are cut together.
+    """
+    surface = np.where(surface == FILLET, FLANK, surface)
+    together = weight * fields.sum(axis=1)
+    on = [surface == code for code in np.unique(surface[weight > 0.0])]
+    size = np.array([weight[where] @ fields[where] ** 2 for where in on])
+    shown = np.array([together[where] @ fields[where] for where in on])
+    holds = size > rules().surface_share * size.sum(axis=0)
+    return np.asarray((~holds | (shown < rules().left_of_it * size)).all(axis=0))
