@@ -340,6 +340,7 @@ MUTATIONS = [
         ("wear/surface.py", "tuple(range(-10, 8))", "tuple(range(5, 8))", "wear/test_surface.py"),
         ("diagnose/taken_back.py", "rules().left_of_it * size", "0.0 * size", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", ".all(axis=0)", ".any(axis=0)", "diagnose/core/test_taken_back.py"),
+        ("diagnose/taken_back.py", "(fewer := among(back)).sum() < back.sum()", "(fewer := back).sum() < back.sum()", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", "surface == FILLET, FLANK, surface", "surface == FILLET, FILLET, surface", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", "rules().surface_share * size", "0.0 * size", "diagnose/core/test_taken_back.py"),
         ("wear/surface.py", "APART = 6", "APART = 0", "wear/test_surface.py"),

@@ -31,7 +31,7 @@ def beside_pose(fields: Floats, pose: Floats, weight: Floats) -> Floats:
 
 
 def taken_back(fields: Floats, weight: Floats, surface: Ints) -> Bools:
-    """Of which effects the others take back more than a share.
+    """Which effects take each other back by more than a share.
 
     Parameters
     ----------
@@ -45,7 +45,9 @@ def taken_back(fields: Floats, weight: Floats, surface: Ints) -> Bools:
     Returns
     -------
     (k,) bool
-        Whether on every surface that holds a `surface_share` of an effect less than `left_of_it` of it is in the sum of all: s f / f f, weighted.
+        The largest set of effects of each of which, on every surface that holds a `surface_share` of it, less than `left_of_it` is in the sum of the set,
+        and of all: s f / f f, weighted. A relief beside a crowning three times as large, the other way round, is not taken back by it: what is left is the
+        crowning.
 
     Notes
     -----
@@ -53,9 +55,16 @@ def taken_back(fields: Floats, weight: Floats, surface: Ints) -> Bools:
     and fillets are one: they are cut together.
     """
     surface = np.where(surface == FILLET, FLANK, surface)
-    together = weight * fields.sum(axis=1)
     on = [surface == code for code in np.unique(surface[weight > 0.0])]
     size = np.array([weight[where] @ fields[where] ** 2 for where in on])
-    shown = np.array([together[where] @ fields[where] for where in on])
     holds = size > rules().surface_share * size.sum(axis=0)
-    return np.asarray((~holds | (shown < rules().left_of_it * size)).all(axis=0))
+
+    def among(which: Bools) -> Bools:
+        together = weight * fields[:, which].sum(axis=1)
+        shown = np.array([together[where] @ fields[where] for where in on])
+        return np.asarray(which & (~holds | (shown < rules().left_of_it * size)).all(axis=0))
+
+    back = among(np.ones(fields.shape[1], dtype=np.bool_))
+    while (fewer := among(back)).sum() < back.sum():
+        back = fewer
+    return back
