@@ -338,6 +338,7 @@ MUTATIONS = [
         ("wear/surface.py", "FEW_SEEN = 20", "FEW_SEEN = 0", "wear/test_surface.py"),
         ("wear/surface.py", "_mean(self.ways, hidden) + apart", "_mean(self.ways, hidden)", "wear/test_surface.py"),
         ("wear/surface.py", "tuple(range(-10, 8))", "tuple(range(5, 8))", "wear/test_surface.py"),
+        ("diagnose/loop.py", "len(taken.worn_sides) == 1 and effect.candidate", "taken.worn_sides and effect.candidate", "diagnose/core/test_coast_wear.py"),
         ("diagnose/taken_back.py", "rules().left_of_it * size", "0.0 * size", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", ".all(axis=0)", ".any(axis=0)", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", "(fewer := among(back)).sum() < back.sum()", "(fewer := back).sum() < back.sum()", "diagnose/core/test_taken_back.py"),

@@ -241,9 +241,11 @@ def _refuted(loop: Loop, cells: Cells, flanks: SurfacePoints) -> bool:
 
 
 def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks: SurfacePoints) -> FoundEffect:
-    """The effect, with wear among its alternatives: where it is not needed once more sides are worn, and that is not excluded; and an even loss
-    where it lowers all flanks."""
+    """The effect, with wear among its alternatives: where it is not needed once more sides are worn, and that is not excluded, or it looks as the wear of
+    coast flanks does beside a worn side; and an even loss where it lowers all flanks."""
     worn = set()
+    if len(taken.worn_sides) == 1 and effect.candidate.effect.like_coast_wear:
+        worn.add(SLIDING_WEAR)
     if effect.kind is not Kind.FORM:
         for other in others:
             if other.worn_sides > taken.worn_sides and effect.name not in (named.name for named in other.effects):

@@ -174,6 +174,8 @@ class Effect(Protocol):
     """False where only a fit that asks for the effect by name may use it."""
     averaged: ClassVar[str]
     """"z" or "roll" where the deviation may wave or bend within a few cells that way: its basis is then averaged over them."""
+    like_coast_wear: ClassVar[bool]
+    """True where light wear of the other side of a gear that is worn on one may look like it, and few gears are cut so."""
     by_worn: ClassVar[bool]
     """True where its basis is another with other sides worn throughout (`Context.worn`); whether it applies and its shapes depend on that in none."""
 
@@ -240,6 +242,7 @@ class CatalogueEffect:
     usual: ClassVar[bool] = False
     searched: ClassVar[bool] = True
     averaged: ClassVar[str] = ""
+    like_coast_wear: ClassVar[bool] = False
     by_worn: ClassVar[bool] = False
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     lower: ClassVar[float] = -0.5

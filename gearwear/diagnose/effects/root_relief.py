@@ -33,6 +33,7 @@ class RootRelief(CatalogueEffect):
         Parameter("amount_um", signed=False),
         Parameter("start_mm", Role.PLACE, signed=False),
     )
+    like_coast_wear: ClassVar[bool] = True
     phrase: ClassVar[str] = "root relief of {amount_um} below a roll length of {start_mm}"
     lower: ClassVar[float] = 0.0
 
