@@ -342,7 +342,7 @@ MUTATIONS = [
         ("diagnose/taken_back.py", "rules().left_of_it * size", "0.0 * size", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", ".all(axis=0)", ".any(axis=0)", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", "(fewer := among(back)).sum() < back.sum()", "(fewer := back).sum() < back.sum()", "diagnose/core/test_taken_back.py"),
-        ("diagnose/taken_back.py", "surface == FILLET, FLANK, surface", "surface == FILLET, FILLET, surface", "diagnose/core/test_taken_back.py"),
+        ("diagnose/taken_back.py", " | (surface == FILLET)", "", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", "rules().surface_share * size", "0.0 * size", "diagnose/core/test_taken_back.py"),
         ("wear/surface.py", "APART = 6", "APART = 0", "wear/test_surface.py"),
         ("wear/surface.py", "0.25 * (self.along - self.across)", "0.25 * (self.across - self.along)", "wear/test_surface.py"),

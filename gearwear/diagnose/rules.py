@@ -190,15 +190,15 @@ class Rules:
     left_of_it: float = rule(
         0.5,
         "1",
-        "tuned: of 41 scans of two generators named effects that are there keep 0.7 and more on some surface, false ones 0.4 and less",
-        "share of an effect that must be left once the others are added, on some surface: else they take each other back",
+        "tuned: of 41 scans of two generators named effects that are there keep 0.7 and more, on the sides of teeth or off them, invented ones 0.4 and less",
+        "share of an effect that must be left once the others are added, on the sides of teeth or off them: else they take each other back",
         off=-math.inf,
     )
     surface_share: float = rule(
-        0.1,
+        0.05,
         "1",
-        "tuned, not varied",
-        "share of its square that an effect must have on a surface for that to speak for it",
+        "derived: a coat has a sixth of its square off the sides of teeth",
+        "share of its square that an effect must have on the sides of teeth, or off them, for these to speak for it",
         off=0.0,
     )
     more_parameters: int = rule(

@@ -45,17 +45,17 @@ def taken_back(fields: Floats, weight: Floats, surface: Ints) -> Bools:
     Returns
     -------
     (k,) bool
-        The largest set of effects of each of which, on every surface that holds a `surface_share` of it, less than `left_of_it` is in the sum of the set,
-        and of all: s f / f f, weighted. A relief beside a crowning three times as large, the other way round, is not taken back by it: what is left is the
+        The largest set of effects of each of which, both on the sides of teeth and on all else that holds a `surface_share` of it, less than `left_of_it` is
+        in the sum of the set, and of all: s f / f f, weighted. A relief beside a crowning three times as large, the other way round, is not taken back by it: what is left is the
         crowning.
 
     Notes
     -----
-    By surfaces, because others may hide an effect on one and show it on the next: a coat over teeth that were cut thin stands on tips and roots. Flanks
-    and fillets are one: they are cut together.
+    Flanks and fillets, which are cut together, apart from all other surfaces, because others may hide an effect there and not here: a coat over teeth that
+    were cut thin stands on tips, roots and ends.
     """
-    surface = np.where(surface == FILLET, FLANK, surface)
-    on = [surface == code for code in np.unique(surface[weight > 0.0])]
+    sides = (surface == FLANK) | (surface == FILLET)
+    on = [sides, ~sides]
     size = np.array([weight[where] @ fields[where] ** 2 for where in on])
     holds = size > rules().surface_share * size.sum(axis=0)
 

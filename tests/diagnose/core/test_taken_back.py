@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gearwear.design.surface import FILLET, FLANK, TIP
+from gearwear.design.surface import FILLET, FLANK, ROOT, TIP
 from gearwear.diagnose.taken_back import beside_pose, taken_back
 
-SURFACE = np.repeat([FLANK, FILLET, TIP], [60, 20, 20])
-PROFILE = np.where(SURFACE == TIP, 0.0, np.linspace(-1.0, 1.0, 100))
+SURFACE = np.repeat([FLANK, FILLET, ROOT, TIP], [60, 20, 10, 10])
+SIDES = SURFACE <= FILLET
+PROFILE = np.where(SIDES, np.linspace(-1.0, 1.0, 100), 0.0)
 WEIGHT = np.linspace(1.0, 3.0, 100)
 
 
@@ -22,17 +23,17 @@ def test_of_one_form_twice_both_stand_as_long_as_half_of_the_larger_is_left(othe
 
 def test_what_cancels_is_told_beside_what_does_not():
     """Two that cancel, one that stands by itself, and one that the latter outweighs."""
-    hollow = PROFILE**2 - np.where(SURFACE == TIP, 0.0, (WEIGHT @ PROFILE**4) / (WEIGHT @ PROFILE**2))
-    odd = np.where(SURFACE == TIP, 0.0, PROFILE**3)
+    hollow = PROFILE**2 - np.where(SIDES, (WEIGHT @ PROFILE**4) / (WEIGHT @ PROFILE**2), 0.0)
+    odd = PROFILE**3
     fields = np.column_stack([odd, hollow, -0.9 * odd, -0.3 * hollow])
     assert taken_back(fields, WEIGHT, SURFACE).tolist() == [True, False, True, False]
 
 
-def test_what_one_surface_shows_nothing_else_takes_back():
-    """A coat of 18 µm over teeth that are 30 µm thinner: flanks lie lower, and tips show it; not where it hardly reaches them."""
-    coat, thin = np.full(100, 0.018), np.where(SURFACE == TIP, 0.0, -0.03)
+def test_what_tips_and_roots_show_nothing_on_the_flanks_takes_back():
+    """A coat of 18 µm over teeth that are 30 µm thinner: flanks lie lower, and roots and tips show it; not where it hardly reaches them."""
+    coat, thin = np.full(100, 0.018), np.where(SIDES, -0.03, 0.0)
     assert taken_back(np.column_stack([coat, thin]), WEIGHT, SURFACE).tolist() == [False, False]
-    coat[SURFACE == TIP] *= 0.1
+    coat[~SIDES] *= 0.1
     assert taken_back(np.column_stack([coat, thin]), WEIGHT, SURFACE).tolist() == [True, True]
 
 
