@@ -220,10 +220,9 @@ def take_each_other_back(loop: Loop | None) -> tuple[str, ...]:
     back = [effect.name.replace("_", " ") for effect in loop.form if effect.evidence.taken_back] if loop is not None else []
     if not back:
         return ()
-    names = sorted(set(back))
     return (
-        f"{listed(names)} fit best together, but of {'each' if len(names) > 1 else 'it'} the others take back most: no finding, what they leave"
-        " is a form that flanks have, or wear that all of them share",
+        f"{listed(sorted(set(back)))} fit best together, but of each the others take back most: no finding, what they leave is a form that flanks have,"
+        " or wear that all of them share",
     )
 
 

@@ -156,8 +156,8 @@ class OpenVolume:
 
     @property
     def form_or_wear(self) -> float:
-        """What a form that all teeth have and no effect explains, or only effects that take each other back, would come to were it wear, mm³; 0 where that is within the volume's standard
-        deviation, and where a scan of the gear unworn shows what was made so."""
+        """What a form that all teeth have and no effect explains, or only effects that take each other back, would come to were it wear, mm³; 0 where
+        that is within the volume's standard deviation, and where a scan of the gear unworn shows what was made so."""
         loop, grid = self.measured.loop, self.measured.cells.grid
         if loop is None or self.unworn_seen:
             return 0.0

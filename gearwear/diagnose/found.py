@@ -331,13 +331,7 @@ def account(
     order.sort(key=lambda i: not _unnamed(model[i], evidence[i]))  # what the drawing leaves open first
     model, evidence = tuple(model[i] for i in order), [evidence[i] for i in order]
     steps = [fit.errors(model[:n], fold) for n in range(len(model) + 1)]
-    which = problem.columns(model)
-    amplitudes, _ = problem.gram.solve(which)
-    parts = fit.parts(model)
-    for part in parts:  # a flank side nobody could use: made like the other; its own value is reported as not known
-        seen = np.diag(problem.gram.information[0])[which[part]] > 0.0
-        if seen.any() and not seen.all():
-            amplitudes[part] = np.where(seen, amplitudes[part], amplitudes[part][seen].mean())
+    amplitudes, parts = _amplitudes(fit, problem, model), fit.parts(model)
     joint, places = fit.joint_uncertainty(model, amplitudes, problem.context, noise)
     spread = [joint[np.ix_(at, at)] for at in places]
     found, known = list[FoundEffect](), list[EffectSize]()
@@ -409,6 +403,17 @@ def account(
     )
 
 
+def _amplitudes(fit: Fit, problem: Problem, model: Model) -> Floats:
+    """Of the pose and the effects of a model. A flank side nobody could use was made like the other; its own value is reported as not known."""
+    which = problem.columns(model)
+    amplitudes, _ = problem.gram.solve(which)
+    for part in fit.parts(model):
+        seen = np.diag(problem.gram.information[0])[which[part]] > 0.0
+        if seen.any() and not seen.all():
+            amplitudes[part] = np.where(seen, amplitudes[part], amplitudes[part][seen].mean())
+    return amplitudes
+
+
 def _unnamed(candidate: Candidate, evidence: Evidence) -> bool:
     """Whether an effect is no finding: open by the drawing, faint, or taken back by others."""
     return candidate.effect.kind is Kind.FORM or evidence.faint or evidence.taken_back
@@ -420,7 +425,7 @@ def _with_taken_back(fit: Fit, problem: Problem, model: Model, evidence: list[Ev
     at = [i for i, one in enumerate(model) if not (one.effect.tooth_specific or one.effect.kind is Kind.FORM)]
     if len(at) < 2:
         return evidence, None
-    amplitudes, parts = problem.gram.solve(problem.columns(model))[0], fit.parts(model)
+    amplitudes, parts = _amplitudes(fit, problem, model), fit.parts(model)
     fields = np.column_stack([fit.dictionary.take(model[i].columns) @ amplitudes[parts[i]] for i in at])
     weight, points = np.where(fit.use, fit.covariance.weight, 0.0), fit.cells.points
     fields = beside_pose(fields, fit.dictionary.take(fit.dictionary.pose), weight)

@@ -46,8 +46,8 @@ def taken_back(fields: Floats, weight: Floats, surface: Ints) -> Bools:
     -------
     (k,) bool
         The largest set of effects of each of which, both on the sides of teeth and on all else that holds a `surface_share` of it, less than `left_of_it` is
-        in the sum of the set, and of all: s f / f f, weighted. A relief beside a crowning three times as large, the other way round, is not taken back by it: what is left is the
-        crowning.
+        in the sum of the set, and of all: s f / f f, weighted. A relief beside a crowning three times as large, the other way round, is not taken back
+        by it: what is left is the crowning.
 
     Notes
     -----

@@ -44,6 +44,8 @@ from gearwear.arrays import Bools, Floats, Ints
 
 STIFFNESS = tuple(range(-10, 8))
 """Decades of stiffness along the face and along the profile, in units of the cells' usual weight, among which is searched; then to half a one."""
+SAME_BOTH_WAYS = tuple(range(-8, 5))
+"""Decades among which is searched where few cells are to tell only one stiffness."""
 APART = 6
 """Decades that they may differ by."""
 TENSION = (0.01, 0.1, 1.0)
@@ -86,18 +88,18 @@ class Stiffness(NamedTuple):
         return float(10.0 ** (0.25 * (self.along - self.across)))
 
     def near(self) -> list[Stiffness]:
-        """It and what is searched next to it: half a decade more or less either way, and another tension, about as stiff over a few cells."""
+        """What is searched next to it: half a decade more or less either way, and another tension, about as stiff over a few cells."""
         along, across, tension = self
-        near = [self, *(Stiffness(along + step, across, tension) for step in (-0.5, 0.5))]
+        near = [Stiffness(along + step, across, tension) for step in (-0.5, 0.5)]
         near += [Stiffness(along, across + step, tension) for step in (-0.5, 0.5)]
         near += [Stiffness(along + step, across - step, tension) for step in (-0.5, 0.5)]
         for other, share in product(TENSION, (0.0, 0.5, 1.0)):
             step = share * math.log10(tension / other)
-            near.append(Stiffness(along + step, across + step, other))
+            near += [Stiffness(along + step, across + step, other)] if other != tension else []
         return [one for one in near if STIFFNESS[0] <= min(one[:2]) <= max(one[:2]) <= min(min(one[:2]) + APART, STIFFNESS[-1])]
 
 
-_ISOTROPIC = tuple(Stiffness(float(decade), float(decade), tension) for tension, decade in product(TENSION, STIFFNESS[2:-3]))
+_ISOTROPIC = tuple(Stiffness(float(decade), float(decade), tension) for tension, decade in product(TENSION, SAME_BOTH_WAYS))
 _ALL = tuple(
     Stiffness(float(along), float(across), tension)
     for along, across, tension in product(STIFFNESS[::2], STIFFNESS[::2], TENSION)
@@ -292,13 +294,16 @@ class SideSurface:
         which comes first does not matter."""
         turned = _from_other_end(shape)
         random = _random(self.at.shape[1])
-        information = _lower(_information(self.at, self.weight), len(self.ways[0].factor), turned)
+        information, usual = (
+            _lower(_information(self.at, self.weight), len(self.ways[0].factor), turned),
+            float(np.median(self.weight)),
+        )
         ends = np.rint(np.cumsum([way.share for way in self.ways]) * random.shape[1]).astype(np.int64)
         drawn = list[Floats]()
         for way, half in zip(self.ways, np.split(random, ends[:-1], axis=1), strict=True):
             if not half.size:
                 continue
-            from_above = _cholesky(_prior(shape, float(np.median(self.weight)), way.stiffness) + information)
+            from_above = _cholesky(_prior(shape, usual, way.stiffness) + information)
             both = np.hstack([_from_below(way.factor, half), _from_below(from_above, half)[turned]])
             drawn.append(both + way.expected[:, None])
         return np.hstack(drawn)
@@ -338,10 +343,10 @@ def likeliest_of_cosines(seen: Bools, value: Floats, weight: float) -> Stiffness
 
     # From both ends of the face: of two as near the first is taken.
     square = weight * fft.dctn(0.5 * (filled(1) + filled(-1)), norm="ortho").ravel()[1:] ** 2
-    eigenvalues = [2.0 - 2.0 * np.cos(np.pi * np.arange(count) / count) for count in seen.shape]
+    eigenvalues = _path_eigenvalues(*seen.shape)
 
     def cost(stiffness: Stiffness) -> float:
-        variance = 1.0 + 1.0 / _penalised((eigenvalues[0], eigenvalues[1]), stiffness)
+        variance = 1.0 + 1.0 / _penalised(eigenvalues, stiffness)
         return float((np.log(variance) + square / variance).sum())
 
     return likeliest(cost, min(_ALL, key=cost))
@@ -447,8 +452,7 @@ def _differences(shape: tuple[int, ...]) -> tuple[Floats, tuple[Floats, Floats]]
     p = sparse.kron(sparse.eye_array(rows), _path(columns))
     order, number = _numbers(shape).ravel(), min(2 * min(rows, columns) + 3, rows * columns)
     bands = [_lower(sparse.csr_array(one), number, order).T for one in (z, p, z @ z, 2.0 * (z @ p), p @ p)]
-    eigenvalues = [2.0 - 2.0 * np.cos(np.pi * np.arange(count) / count) for count in _coefficients(shape)]
-    return np.stack(bands), (eigenvalues[0], eigenvalues[1])
+    return np.stack(bands), _path_eigenvalues(rows, columns)
 
 
 def _prior(shape: tuple[int, ...], usual: float, stiffness: Stiffness) -> Floats:
@@ -463,6 +467,12 @@ def _penalised(eigenvalues: tuple[Floats, Floats], stiffness: Stiffness) -> Floa
     along, across = eigenvalues
     both = (stiffness.stretch * along[:, None] + across / stiffness.stretch).ravel()[1:]
     return np.asarray(stiffness.stiffness * both * (stiffness.tension + both), dtype=np.float64)
+
+
+def _path_eigenvalues(rows: int, columns: int) -> tuple[Floats, Floats]:
+    """Eigenvalues of `_path` of so many rows, and of so many columns: those of cosines."""
+    along, across = (2.0 - 2.0 * np.cos(np.pi * np.arange(number) / number) for number in (rows, columns))
+    return along, across
 
 
 def _path(number: int) -> sparse.csr_array:
