@@ -55,6 +55,7 @@ from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, signed_difference, worn_volume
 from gearwear.wear.thickness import SectionThickness
+from gearwear.wear.volume import StiffnessOf
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
@@ -177,10 +178,10 @@ class Scanned:
     as_made: Cells
     scatter: float
 
-    def find(self, cells: Cells, limits: bool = True, errors: bool = True) -> Wear:
+    def find(self, cells: Cells, limits: bool = True, errors: bool = True, as_stiff: StiffnessOf | None = None) -> Wear:
         """The wear in some cells of this scan; options as `find_wear` has them."""
         loop, gone = self.measured.loop, self.measured.gone
-        return find_wear(cells, self.scatter, self.worn_sides, loop, limits=limits, gone=gone, errors=errors)
+        return find_wear(cells, self.scatter, self.worn_sides, loop, limits=limits, gone=gone, errors=errors, as_stiff=as_stiff)
 
     @property
     def as_made_points(self) -> SurfacePoints:
@@ -249,7 +250,9 @@ def _apart_from_contact(scanned: Scanned, lost: Lost, inspection: bool) -> list[
     """Calls that need neither the contact nor one another: what the effects change of the wear, thickness with what they change of it,
     inspection, solids, the wear with other sides worn throughout, and remarks on the scan, for which neighbouring points are compared."""
     measured, unworn = scanned.measured, scanned.unworn
-    left_in, quick = lost.effects if lost.taken_out else None, partial(scanned.find, limits=False, errors=False)
+    left_in = lost.effects if lost.taken_out else None
+    # As stiff as with the effects taken out: what differs is what an effect does, not which stiffness is a little likelier.
+    quick = partial(scanned.find, limits=False, errors=False, as_stiff=lost.wear.as_stiff)
     return [
         tuple
         if left_in is None

@@ -11,7 +11,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets
-from gearwear.wear.surface import FEWEST_SEEN, SideSurface
+from gearwear.wear.surface import FEWEST_SEEN, AsStiff, SideSurface
 
 FEW, LONE = 3, 5.0
 """Points of a cell that cannot outvote a stray among them; scatters of points by which one may lie off what is round it."""
@@ -76,10 +76,15 @@ class CellMeans:
                 here &= count[tuple(half)] >= LEAST_SHARE * float(np.median(count[tuple(half)][here]))
         return cls(deviation, count, variance, cell_offsets(cells), held, sheets.seen & ~strays)
 
-    def surface(self, at: At, wide: Bools, about: SideSurface | None = None, fewest: int = FEWEST_SEEN) -> SideSurface | None:
-        """Of the cells `at`; `wide` of them, (rows, columns), say how stiff it is. None where fewer than `fewest` hold points."""
+    def surface(
+        self, at: At, wide: Bools, about: SideSurface | None = None, fewest: int = FEWEST_SEEN, as_stiff: AsStiff | None = None
+    ) -> SideSurface | None:
+        """Of the cells `at`; `wide` of them, (rows, columns), say how stiff it is, where `as_stiff` does not. None where fewer than `fewest` hold
+        points."""
         means = np.where(self.held[at], self.deviation[at], np.nan)
-        return SideSurface.of(means, self.count[at], self.variance[at], self.offset[(slice(None), *at)], wide, about, fewest)
+        return SideSurface.of(
+            means, self.count[at], self.variance[at], self.offset[(slice(None), *at)], wide, about, fewest, as_stiff
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,9 +95,9 @@ class CommonSurface:
     share: Floats
 
     @classmethod
-    def of(cls, means: CellMeans, half: int, part: slice, wide: Bools) -> CommonSurface | None:
-        """Of all points of the columns `part` of side `half` within `wide` (teeth, 2, rows, columns), as if they lay on one; None where they are too
-        few."""
+    def of(cls, means: CellMeans, half: int, part: slice, wide: Bools, as_stiff: AsStiff | None = None) -> CommonSurface | None:
+        """Of all points of the columns `part` of side `half` within `wide` (teeth, 2, rows, columns), as if they lay on one; `as_stiff` as it is, where
+        that is known. None where they are too few."""
         at = (slice(None), half, slice(None), part)
         number = np.where(means.held[at] & np.isfinite(means.deviation[at]) & wide[at], means.count[at], 0.0)
         whole = number.sum(axis=0)
@@ -100,7 +105,7 @@ class CommonSurface:
         mean = np.where(whole > 0.0, (share * np.nan_to_num(means.deviation[at])).sum(axis=0), np.nan)
         error = np.where(whole > 0.0, (share**2 * means.variance[at]).sum(axis=0), 1.0)
         place = (share * np.nan_to_num(means.offset[(slice(None), *at)])).sum(axis=1)
-        surface = SideSurface.of(mean, whole, error, place, np.asarray(wide[at].any(axis=0)))
+        surface = SideSurface.of(mean, whole, error, place, np.asarray(wide[at].any(axis=0)), as_stiff=as_stiff)
         return None if surface is None else cls(surface, share)
 
 

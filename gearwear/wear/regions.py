@@ -8,7 +8,7 @@ region and a rim round it: signed sums are unbiased, one-sided ones collect nois
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import ndimage
@@ -28,7 +28,7 @@ from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_sides, faint_wear, flank_limits, upper_limit
 from gearwear.wear.places import LaidFlat, lay_flat, standing_out
 from gearwear.wear.ridge import PitchRidge
-from gearwear.wear.volume import DEEPEST_OVER, Volumes, region_volumes, unexplained_rms
+from gearwear.wear.volume import DEEPEST_OVER, StiffnessOf, Volumes, region_volumes, unexplained_rms
 
 LEAST_VOLUME = 5.0
 """Least volume of a region in the standard deviations of its own cells."""
@@ -150,6 +150,8 @@ class Wear(Card):
         What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³ (`limits.upper_limit`).
     apart : (float, float)
         How far the flanks of left and right, worn throughout, were made apart, mm (`made_apart`).
+    as_stiff : StiffnessOf
+        How stiff the surfaces are of the flanks and fillets that were looked at.
     """
 
     regions: tuple[WearRegion, ...]
@@ -172,6 +174,7 @@ class Wear(Card):
     ridges: tuple[PitchRidge, ...] = ()
     unsure: float = 0.0
     apart: tuple[float, float] = (0.0, 0.0)
+    as_stiff: StiffnessOf = field(default_factory=dict)
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -223,6 +226,7 @@ def find_wear(
     limits: bool = True,
     gone: Bools | None = None,
     errors: bool = True,
+    as_stiff: StiffnessOf | None = None,
 ) -> Wear:
     """Find the worn regions of a scan.
 
@@ -243,6 +247,8 @@ def find_wear(
         Cells that are broken off: neither worn nor anything else.
     errors : bool
         Whether to work out how well volumes and depths are known, and what wear too faint to be found may come to; without, they are nan.
+    as_stiff : StiffnessOf or None
+        How stiff the surfaces are of which that is known (`Wear.as_stiff`); the others say it themselves.
     """
     if gone is None:
         gone = np.zeros(cells.grid.side_shape, dtype=bool)
@@ -250,7 +256,7 @@ def find_wear(
     places = standing_out(laid, noise, loop, worn, gone)
     cells, sheets = laid.cells, laid.sheets
     volumes = region_volumes(
-        cells, sheets, laid.filled, places.mask, places.wide, places.allowed, noise, loop, worn, errors
+        cells, sheets, laid.filled, places.mask, places.wide, places.allowed, noise, loop, worn, errors, as_stiff
     )  # fmt: skip
     where = np.argwhere(places.mask.any(axis=(2, 3)))
     at = tuple(where.T)
@@ -300,6 +306,7 @@ def find_wear(
         hidden_pits=_hidden_pits(cells, sheets, counted, regions), faint=faint + laid.perhaps, burrs=laid.burrs, edges=int(places.edges.sum()),
         edge_depth=places.edge_depth, unseen=sum(region.max_depth * float(places.beyond[region.tooth, region.side.index].sum()) for region in regions),
         proud=laid.proud, level_open=laid.level_open, ridges=laid.ridges, unsure=unsure, apart=(float(volumes.apart[0]), float(volumes.apart[1])),
+        as_stiff=volumes.as_stiff,
     )  # fmt: skip
 
 

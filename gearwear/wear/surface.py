@@ -27,7 +27,7 @@ every draw finds another deepest place by chance, and where one place stands out
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import product
@@ -99,6 +99,9 @@ class Stiffness(NamedTuple):
         return [one for one in near if STIFFNESS[0] <= min(one[:2]) <= max(one[:2]) <= min(min(one[:2]) + APART, STIFFNESS[-1])]
 
 
+AsStiff = Mapping[Stiffness, float]
+"""How stiff a surface may be, and the share of the likelihood of each."""
+
 _ISOTROPIC = tuple(Stiffness(float(decade), float(decade), tension) for tension, decade in product(TENSION, SAME_BOTH_WAYS))
 _ALL = tuple(
     Stiffness(float(along), float(across), tension)
@@ -169,6 +172,7 @@ class SideSurface:
         worn: Bools,
         about: SideSurface | None = None,
         fewest: int = FEWEST_SEEN,
+        as_stiff: AsStiff | None = None,
     ) -> SideSurface | None:
         """The surface through the means of cells; None where too few hold points.
 
@@ -188,6 +192,8 @@ class SideSurface:
             What it is expected to be before its cells are seen, but for a level; None: flat.
         fewest : int
             Cells that must hold points for there to be a surface, and be worn to say alone how stiff it is.
+        as_stiff : AsStiff or None
+            How stiff it is, where that is known; None: as its cells say.
         """
         seen = np.isfinite(mean)
         if seen.sum() < fewest:
@@ -203,28 +209,35 @@ class SideSurface:
         inside = worn[seen] if worn[seen].sum() >= fewest else np.ones(len(weight), dtype=bool)
         told = np.where(inside, weight, 0.0)
         bands, pull = 2 * min(_coefficients(mean.shape)) + 3, at.T @ (told * value)
-        banded = _lower(_information(at, told), bands)
+        banded = _information(at, told, bands)
 
         def cost(stiffness: Stiffness) -> float:
-            triangle = _cholesky(_prior(mean.shape, usual, stiffness) + banded)
+            triangle = _cholesky(_precision(banded, mean.shape, usual, stiffness))
             half = dtbtrs(triangle, pull, uplo="L")[0]
-            own = float(np.log(usual * _penalised(_differences(mean.shape)[1], stiffness)).sum())
+            own = float(np.log(usual * _penalised(_differences(mean.shape)[2], stiffness)).sum())
             return 2.0 * float(np.log(triangle[0]).sum()) - own - float(half @ half)
 
-        if inside.sum() >= FEW_SEEN:
+        if as_stiff is not None:
+            likely = dict(as_stiff)
+        elif inside.sum() >= FEW_SEEN:
             likely = {likeliest(cost, likeliest_of_cosines(seen, value, usual)): 1.0}
         else:
             likely = shares_of_likelihood(cost)
         if not inside.all():
-            banded = _lower(_information(at, weight), bands)
+            banded = _information(at, weight, bands)
         ways = []
         for stiffness, share in likely.items():
-            triangle = _cholesky(_prior(mean.shape, usual, stiffness) + banded)
+            triangle = _cholesky(_precision(banded, mean.shape, usual, stiffness))
             expected = before + cho_solve_banded((triangle, True), at.T @ (weight * value), check_finite=False)
             ways.append(_AsStiff(share, stiffness, triangle, expected))
         expected = _mean(ways, [way.expected for way in ways])
         value = (_over_cells(mean.shape) @ expected).reshape(mean.shape) + level
         return cls(value, seen, at, weight, tuple(ways), level)
+
+    @property
+    def as_stiff(self) -> AsStiff:
+        """How stiff it is."""
+        return {way.stiffness: way.share for way in self.ways}
 
     @property
     def expected(self) -> Floats:
@@ -292,18 +305,14 @@ class SideSurface:
     def _drawn(self, shape: tuple[int, ...]) -> Floats:
         """Coefficients of surfaces from N(c, A⁻¹), without the level, (n, `DRAWS`), of each stiffness its share; half of them from either end of the face:
         which comes first does not matter."""
-        turned = _from_other_end(shape)
-        random = _random(self.at.shape[1])
-        information, usual = (
-            _lower(_information(self.at, self.weight), len(self.ways[0].factor), turned),
-            float(np.median(self.weight)),
-        )
+        turned, random = _from_other_end(shape), _random(self.at.shape[1])
+        information, usual = _information(self.at, self.weight, len(self.ways[0].factor), turned), float(np.median(self.weight))
         ends = np.rint(np.cumsum([way.share for way in self.ways]) * random.shape[1]).astype(np.int64)
         drawn = list[Floats]()
         for way, half in zip(self.ways, np.split(random, ends[:-1], axis=1), strict=True):
             if not half.size:
                 continue
-            from_above = _cholesky(_prior(shape, usual, way.stiffness) + information)
+            from_above = _cholesky(_precision(information, shape, usual, way.stiffness))
             both = np.hstack([_from_below(way.factor, half), _from_below(from_above, half)[turned]])
             drawn.append(both + way.expected[:, None])
         return np.hstack(drawn)
@@ -445,21 +454,26 @@ def _over_cells(shape: tuple[int, int]) -> sparse.csr_array:
 
 
 @lru_cache(maxsize=8)
-def _differences(shape: tuple[int, ...]) -> tuple[Floats, tuple[Floats, Floats]]:
-    """L_z, L_p, L_z², 2 L_z L_p and L_p², (5, n, bands), as many bands as A has, the diagonal first; and the eigenvalues of L_z and of L_p."""
+def _differences(shape: tuple[int, ...]) -> tuple[Ints, Floats, tuple[Floats, Floats]]:
+    """Which bands of L_z, L_p, L_z², 2 L_z L_p and L_p² are not all zeros, (k,), counted from the diagonal down; these, (5, k, n); and the eigenvalues
+    of L_z and of L_p."""
     rows, columns = _coefficients(shape)
     z = sparse.kron(_path(rows), sparse.eye_array(columns))
     p = sparse.kron(sparse.eye_array(rows), _path(columns))
     order, number = _numbers(shape).ravel(), min(2 * min(rows, columns) + 3, rows * columns)
-    bands = [_lower(sparse.csr_array(one), number, order).T for one in (z, p, z @ z, 2.0 * (z @ p), p @ p)]
-    return np.stack(bands), _path_eigenvalues(rows, columns)
+    bands = np.stack([_lower(sparse.csr_array(one), number, order) for one in (z, p, z @ z, 2.0 * (z @ p), p @ p)])
+    which = np.flatnonzero(bands.any(axis=(0, 2)))
+    return which, np.ascontiguousarray(bands[:, which]), _path_eigenvalues(rows, columns)
 
 
-def _prior(shape: tuple[int, ...], usual: float, stiffness: Stiffness) -> Floats:
-    """Q, lower bands, where the cells weigh `usual`."""
+def _precision(information: Floats, shape: tuple[int, ...], usual: float, stiffness: Stiffness) -> Floats:
+    """A = Q + BᵀWB, lower bands, of BᵀWB; Q where the cells weigh `usual`."""
     s, tension = stiffness.stretch, stiffness.tension
     factors = usual * stiffness.stiffness * np.array([tension * s, tension / s, s**2, 1.0, s**-2])
-    return np.tensordot(factors, _differences(shape)[0], 1).T
+    which, differences, _ = _differences(shape)
+    precision = information.copy(order="F")
+    precision[which] += np.tensordot(factors, differences, 1)
+    return precision
 
 
 def _penalised(eigenvalues: tuple[Floats, Floats], stiffness: Stiffness) -> Floats:
@@ -481,23 +495,25 @@ def _path(number: int) -> sparse.csr_array:
     return sparse.csr_array(step.T @ step)
 
 
-def _information(at: sparse.csr_array, weight: Floats) -> sparse.csr_array:
-    """BᵀWB, (n, n) sparse, mm⁻²."""
-    data = sparse.csr_array(at.T) @ _rows_times(weight, at)
-    data.sort_indices()
-    return data
+def _information(at: sparse.csr_array, weight: Floats, number: int, order: Ints | None = None) -> Floats:
+    """BᵀWB, lower bands, (number, n), mm⁻²; coefficients numbered by `order` (n,), where that is given.
 
-
-def _rows_times(factors: Floats, matrix: sparse.csr_array) -> sparse.csr_array:
-    """A matrix, (m, n), with as many entries in each row, its rows times factors (m,): what the product with a diagonal matrix is, entries in its order."""
-    number = len(factors)
-    values, columns = matrix.data.reshape(number, -1) * factors[:, None], matrix.indices.reshape(number, -1)
-    return sparse.csr_array((values[:, ::-1].ravel(), columns[:, ::-1].ravel(), matrix.indptr), shape=matrix.shape)
+    The coefficients of all cells lie to each other in one order: which pairs are at or below the diagonal the first cell tells.
+    """
+    m, n = at.shape
+    share, column = at.data.reshape(m, -1), at.indices.reshape(m, -1)
+    column = column if order is None else order[column]
+    rising = np.argsort(column[0])
+    low, high = (rising[one] for one in np.triu_indices(len(rising)))
+    place = column[:, low] * (number - 1) + column[:, high]  # a column's bands lie together
+    values = share[:, high] * (weight[:, None] * share)[:, low]
+    summed = np.bincount(place.ravel(), values.ravel(), minlength=n * number)[: n * number]
+    return np.asarray(summed.reshape(n, number).T, dtype=np.float64)
 
 
 def _cholesky(bands: Floats) -> Floats:
-    """Cholesky factor of a positive definite matrix, both as lower bands, (number, n)."""
-    triangle, failed = dpbtrf(bands, lower=1)
+    """Cholesky factor of a positive definite matrix, both as lower bands, (number, n); in place of the matrix."""
+    triangle, failed = dpbtrf(bands, lower=1, overwrite_ab=1)
     if failed:
         raise np.linalg.LinAlgError("the precision of a surface is not positive definite")
     return np.asarray(triangle, dtype=np.float64)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +18,7 @@ from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
 from gearwear.wear.made_apart import made_apart
-from gearwear.wear.surface import FEWEST_SEEN, SideSurface
+from gearwear.wear.surface import FEWEST_SEEN, AsStiff, SideSurface
 from gearwear.wear.uncertainty import CellErrors, edge_covariance, ending_below, region_weights, torn_beyond
 from gearwear.wear.weights import SideWeights, by_side
 
@@ -31,6 +32,11 @@ FEWEST_OF_FILLET = 12
 """Cells of a fillet from which on they say how it runs, and how stiff it is: it has a few columns, and little of it is worn."""
 LEAST_PLACEBO = 0.5
 """Share of a flank that is unworn on another side from which on it stands for the whole: less, blown up, is nothing but noise."""
+
+StiffnessOf = Mapping[tuple[int, int, bool], AsStiff]
+"""How stiff surfaces are: by tooth, side, and whether it is the flank or the fillet; by `COMMON` the surface that the flanks of a side have in common."""
+COMMON = -1
+"""Tooth of that surface."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +63,8 @@ class Volumes:
         Share of what the rest of the flank seems to have lost that is in `value` (`share_of_rest`).
     apart : (2,) float
         How far the flanks of a side worn throughout were made apart, mm (`made_apart`).
+    as_stiff : StiffnessOf
+        How stiff the surfaces are.
     """
 
     value: Floats
@@ -68,6 +76,7 @@ class Volumes:
     pitted: Bools
     rest: Floats
     apart: Floats
+    as_stiff: StiffnessOf
 
 
 def region_volumes(
@@ -81,6 +90,7 @@ def region_volumes(
     loop: Loop | None,
     worn: frozenset[Side] = frozenset(),
     known: bool = True,
+    as_stiff: StiffnessOf | None = None,
 ) -> Volumes:
     """Volumes of the sides with worn cells.
 
@@ -103,6 +113,8 @@ def region_volumes(
         few points would read too shallow where wear is steep, and every flank of the side alike.
     known : bool
         Whether to work out the covariance; nan without.
+    as_stiff : StiffnessOf or None
+        How stiff the surfaces are of which that is known; the others say it themselves.
     """
     where, filled = np.argwhere(mask.any(axis=(2, 3))), filled.copy()
     number = len(where)
@@ -110,7 +122,7 @@ def region_volumes(
         nothing, none = np.zeros(0), np.zeros((0, 0))
         return Volumes(
             value=nothing, certainty=nothing, together=nothing, covariance=none, filled=filled, deepest=np.zeros((0, 2)),
-            pitted=np.zeros(0, dtype=np.bool_), rest=nothing, apart=np.zeros(len(Side)),
+            pitted=np.zeros(0, dtype=np.bool_), rest=nothing, apart=np.zeros(len(Side)), as_stiff={},
         )  # fmt: skip
     torn, slope = torn_beyond(sheets, filled, noise, worn)
     ending = ending_below(sheets, filled, noise, worn, cells.grid.gear.undercut)
@@ -129,7 +141,7 @@ def region_volumes(
         ending=ending,
         apart=apart,
     )
-    surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
+    surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn, as_stiff or {})
     near = wide[tuple(where.T)].astype(np.float64)
     alone = surfaces.over(near)
     chance = errors.by_chance(alone, near)
@@ -155,7 +167,7 @@ def region_volumes(
         covariance = chance + errors.of_wear(summed, support) + np.diag(share * (1.0 - share) * doubt)
     return Volumes(
         value=summed.value, certainty=certainty, together=together, covariance=covariance, filled=filled, deepest=surfaces.deepest,
-        pitted=surfaces.pitted, rest=share, apart=apart,
+        pitted=surfaces.pitted, rest=share, apart=apart, as_stiff=surfaces.as_stiff,
     )  # fmt: skip
 
 
@@ -215,7 +227,7 @@ class _Surfaces:
     @classmethod
     def of(
         cls, cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, where: Ints, filled: Floats, noise: float,
-        loop: Loop | None, worn: frozenset[Side],
+        loop: Loop | None, worn: frozenset[Side], as_stiff: StiffnessOf,
     ) -> _Surfaces:  # fmt: skip
         """Of the regions; `filled` gets them where nothing was seen."""
         height = cells.grid.row_height if cells.grid.rows > 1 else 1.0  # as `area` has it
@@ -223,7 +235,10 @@ class _Surfaces:
         texture = 0.0 if loop is None else loop.covariance.texture
         means = CellMeans.of(cells, sheets, filled, noise, loop, where)
         flank = slice(sheets.fillet, None)
-        common = {side.index: CommonSurface.of(means, side.index, flank, wide) for side in worn}
+        common = {
+            side.index: CommonSurface.of(means, side.index, flank, wide, as_stiff.get((COMMON, side.index, True)))
+            for side in worn
+        }
         parts, deepest = [], np.full((len(where), 2), np.nan)
         pits, scatter = np.full(len(where), -np.inf), cells.grid.sides(cells.scatter)
         around = max(1, round(DEEPEST_OVER / cells.grid.size))
@@ -235,7 +250,8 @@ class _Surfaces:
                     continue
                 about = common.get(side[1]) if part.start else None
                 fewest = FEWEST_SEEN if part.start else FEWEST_OF_FILLET
-                surface = means.surface(at, wide[at], None if about is None else about.surface, fewest)
+                known = as_stiff.get((*side, bool(part.start)))
+                surface = means.surface(at, wide[at], None if about is None else about.surface, fewest, known)
                 parts.append((i, part, surface))
                 if surface is not None and wide[at].any():
                     filled[at] = np.where(means.shown[at], filled[at], surface.value)
@@ -248,6 +264,16 @@ class _Surfaces:
                         pits[i] = _deepest_pit(deeper, number, scatter[at], noise, texture, around, there)
         places = max(float(mask[tuple(where.T)][..., sheets.fillet :].sum()) / around**2, 1.0)
         return cls(sheets, where, tuple(parts), common, deepest, pits > float(ndtri(1.0 - ALARM / places)))
+
+    @property
+    def as_stiff(self) -> StiffnessOf:
+        """How stiff they are."""
+        own = {
+            (int(self.where[i, 0]), int(self.where[i, 1]), bool(part.start)): one.as_stiff
+            for i, part, one in self.parts
+            if one is not None
+        }
+        return own | {(COMMON, side, True): one.surface.as_stiff for side, one in self.common.items() if one is not None}
 
     def over(self, support: Floats) -> _Integral:
         """Integrals over `support` (k, rows, columns), the share of each cell that counts."""

@@ -17,11 +17,13 @@ from gearwear.wear.surface import (
     Stiffness,
     _at_points,
     _differences,
+    _from_other_end,
+    _information,
     _numbers,
     _over_cells,
     _over_windows,
     _penalised,
-    _prior,
+    _precision,
     likeliest,
     likeliest_of_cosines,
     shares_of_likelihood,
@@ -282,6 +284,45 @@ def test_the_deepest_mean_is_the_same_from_either_end_of_the_face():
     assert way == pytest.approx(found(mean[::-1], count[::-1], turned, worn).deepest((1.5, 1.5), worn), rel=1e-9)
 
 
+def written_out(bands):
+    """A symmetric matrix, (n, n), of its lower bands."""
+    size = bands.shape[1]
+    matrix = np.zeros((size, size))
+    for below, band in enumerate(bands):
+        matrix[np.arange(below, size), np.arange(size - below)] = band[: size - below]
+        matrix[np.arange(size - below), np.arange(below, size)] = band[: size - below]
+    return matrix
+
+
+@pytest.mark.parametrize("shape", [(13, 8), (8, 13), (1, 12), (4, 2)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_what_the_cells_tell_is_the_product_of_what_they_see(shape, turned):
+    """BᵀWB, of dense matrices; cells here and there hold no points, one weighs nothing."""
+    random = np.random.default_rng(4)
+    seen = random.random(shape) < 0.8
+    at = _at_points(seen, random.uniform(-0.4, 0.4, (2, *shape)), np.full(shape, 3.0))
+    weight = random.uniform(0.5, 2.0, int(seen.sum())) * (np.arange(int(seen.sum())) > 0)
+    b, n = at.toarray(), at.shape[1]
+    expected, order = b.T @ (weight[:, None] * b), None
+    if turned:
+        order = _from_other_end(shape)
+        expected = expected[np.ix_(np.argsort(order), np.argsort(order))]
+    bands = _information(at, weight, min(2 * min(count + 2 if count > 1 else 1 for count in shape) + 3, n), order)
+    np.testing.assert_allclose(written_out(bands), expected, rtol=1e-12, atol=1e-14)
+
+
+def test_a_surface_is_as_stiff_as_it_is_told(monkeypatch):
+    """Told what it found itself it is the same to the last digit, and no likelihood is asked; told to be stiff it is flat."""
+    random = np.random.default_rng(9)
+    mean, count, offset = cells_of(random, SHAPE, 4.0, lambda z, x: hollow(z, x, SHAPE, 0.05, (6.0, 4.0)))
+    arguments = mean, count, NOISE**2 / np.maximum(count, 1.0), offset, np.ones(SHAPE, dtype=bool)
+    own = SideSurface.of(*arguments)
+    monkeypatch.setattr("gearwear.wear.surface.likeliest", None)
+    np.testing.assert_array_equal(SideSurface.of(*arguments, as_stiff=own.as_stiff).value, own.value)
+    stiff = SideSurface.of(*arguments, as_stiff={Stiffness(7.0, 7.0, 1.0): 1.0})
+    assert np.ptp(stiff.value) < 1e-3 * np.ptp(own.value)
+
+
 @pytest.mark.parametrize("shape", [(13, 8), (8, 13), (9, 9)])
 @pytest.mark.parametrize(("along", "across"), [(-3.0, 1.0), (2.0, 0.5)])
 def test_bending_costs_along_the_face_and_along_the_profile_what_the_stiffness_says(shape, along, across):
@@ -289,15 +330,10 @@ def test_bending_costs_along_the_face_and_along_the_profile_what_the_stiffness_s
     out."""
 
     def dense(tension):
-        bands = _prior(shape, 1.0, Stiffness(along, across, tension))
-        size = bands.shape[1]
-        matrix = np.zeros((size, size))
-        for below, band in enumerate(bands):
-            matrix[np.arange(below, size), np.arange(size - below)] = band[: size - below]
-            matrix[np.arange(size - below), np.arange(below, size)] = band[: size - below]
-        return matrix
+        nothing = np.zeros((2 * min(shape) + 7, math.prod(count + 2 for count in shape)))
+        return written_out(_precision(nothing, shape, 1.0, Stiffness(along, across, tension)))
 
-    eigenvalues = np.sort(_penalised(_differences(shape)[1], Stiffness(along, across, 0.1)))
+    eigenvalues = np.sort(_penalised(_differences(shape)[2], Stiffness(along, across, 0.1)))
     np.testing.assert_allclose(np.linalg.eigvalsh(dense(0.1))[1:], eigenvalues, rtol=1e-6, atol=1e-9)
     number = _numbers(shape)
     for axis, decade in enumerate((along, across)):

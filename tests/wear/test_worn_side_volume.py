@@ -146,3 +146,16 @@ def test_corners_made_on_both_sides_are_no_wear_of_the_worn_one(both):
         end = 2.0 * grid.row_height  # rows of which the middle lies within 5 % of the face and a row
         lost -= last * end * (even + deep * (1.0 - 0.5 * end / reach))
     assert wear.volume == pytest.approx(GEAR.teeth * abs(high - low) / (2.0 * GEAR.base_radius) * lost, rel=0.03)
+
+
+def test_wear_whose_stiffness_is_known_is_the_same_without_a_search(monkeypatch):
+    """Of each flank, each fillet and what the flanks have in common: nothing is left to ask, and every number is the same."""
+    cells, _ = worn_side(np.random.default_rng(3), points=12)
+    own = find_wear(cells, NOISE, WORN, limits=False)
+    assert own.regions and own.as_stiff
+    for search in ("likeliest", "shares_of_likelihood"):
+        monkeypatch.setattr(f"gearwear.wear.surface.{search}", None)
+    again = find_wear(cells, NOISE, WORN, limits=False, as_stiff=own.as_stiff)
+    assert [(one.volume, one.max_depth) for one in again.regions] == [(one.volume, one.max_depth) for one in own.regions]
+    with pytest.raises(TypeError):
+        find_wear(cells, NOISE, WORN, limits=False)
