@@ -11,7 +11,8 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets
-from gearwear.wear.surface import FEWEST_SEEN, AsStiff, SideSurface
+from gearwear.wear.stiffness import AsStiff
+from gearwear.wear.surface import FEWEST_SEEN, SideSurface
 
 FEW, LONE = 3, 5.0
 """Points of a cell that cannot outvote a stray among them; scatters of points by which one may lie off what is round it."""

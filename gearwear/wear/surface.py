@@ -27,29 +27,29 @@ every draw finds another deepest place by chance, and where one place stands out
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
-from scipy import fft, ndimage, sparse
+from scipy import sparse
 from scipy.linalg import cho_solve_banded
 from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpbtrf, dtbtrs
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.wear.stiffness import (
+    AsStiff,
+    Stiffness,
+    likeliest,
+    likeliest_of_cosines,
+    path_eigenvalues,
+    penalised,
+    shares_of_likelihood,
+)
 
-STIFFNESS = tuple(range(-10, 8))
-"""Decades of stiffness along the face and along the profile, in units of the cells' usual weight, among which is searched; then to half a one."""
-SAME_BOTH_WAYS = tuple(range(-8, 5))
-"""Decades among which is searched where few cells are to tell only one stiffness."""
-APART = 6
-"""Decades that they may differ by."""
-TENSION = (0.01, 0.1, 1.0)
-"""κ² among which is searched: leaning counts as much as bending over 10, 3 and 1 cells."""
 DRAWS, PLACES = 200, 2
 """Surfaces that are drawn, and places of a window to a cell."""
 BETWEEN = 1e-6
@@ -58,56 +58,6 @@ FEWEST_SEEN = 4
 """Cells that must hold points for a side to have a surface."""
 FEW_SEEN = 20
 """Cells below which they leave open how stiff it is; from there on the likeliest stiffness stands for all."""
-LEAST_SHARE = 0.01
-"""Likelihood, of that of the likeliest, below which a stiffness does not count."""
-
-
-class Stiffness(NamedTuple):
-    """How stiff a surface is before its cells are seen.
-
-    Parameters
-    ----------
-    along, across : float
-        Decades of τ s² and τ / s², along the face and along the profile, in units of the cells' usual weight.
-    tension : float
-        κ².
-    """
-
-    along: float
-    across: float
-    tension: float
-
-    @property
-    def stiffness(self) -> float:
-        """τ, in units of the cells' usual weight."""
-        return float(10.0 ** (0.5 * (self.along + self.across)))
-
-    @property
-    def stretch(self) -> float:
-        """s."""
-        return float(10.0 ** (0.25 * (self.along - self.across)))
-
-    def near(self) -> list[Stiffness]:
-        """What is searched next to it: half a decade more or less either way, and another tension, about as stiff over a few cells."""
-        along, across, tension = self
-        near = [Stiffness(along + step, across, tension) for step in (-0.5, 0.5)]
-        near += [Stiffness(along, across + step, tension) for step in (-0.5, 0.5)]
-        near += [Stiffness(along + step, across - step, tension) for step in (-0.5, 0.5)]
-        for other, share in product(TENSION, (0.0, 0.5, 1.0)):
-            step = share * math.log10(tension / other)
-            near += [Stiffness(along + step, across + step, other)] if other != tension else []
-        return [one for one in near if STIFFNESS[0] <= min(one[:2]) <= max(one[:2]) <= min(min(one[:2]) + APART, STIFFNESS[-1])]
-
-
-AsStiff = Mapping[Stiffness, float]
-"""How stiff a surface may be, and the share of the likelihood of each."""
-
-_ISOTROPIC = tuple(Stiffness(float(decade), float(decade), tension) for tension, decade in product(TENSION, SAME_BOTH_WAYS))
-_ALL = tuple(
-    Stiffness(float(along), float(across), tension)
-    for along, across, tension in product(STIFFNESS[::2], STIFFNESS[::2], TENSION)
-    if abs(along - across) <= APART
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,7 +164,7 @@ class SideSurface:
         def cost(stiffness: Stiffness) -> float:
             triangle = _cholesky(_precision(banded, mean.shape, usual, stiffness))
             half = dtbtrs(triangle, pull, uplo="L")[0]
-            own = float(np.log(usual * _penalised(_differences(mean.shape)[2], stiffness)).sum())
+            own = float(np.log(usual * penalised(_differences(mean.shape)[2], stiffness)).sum())
             return 2.0 * float(np.log(triangle[0]).sum()) - own - float(half @ half)
 
         if as_stiff is not None:
@@ -323,44 +273,6 @@ def _mean(ways: Sequence[_AsStiff], values: Sequence[Floats]) -> Floats:
     return np.asarray(sum(way.share * value for way, value in zip(ways, values, strict=True)), dtype=np.float64)
 
 
-def shares_of_likelihood(cost: Callable[[Stiffness], float]) -> dict[Stiffness, float]:
-    """The share of the likelihood that each stiffness and tension has that is the same both ways, expected alike before anything is seen, of a `cost` that
-    is −2 log likelihood; those below `LEAST_SHARE` of the greatest are left out."""
-    costs = np.array([cost(one) for one in _ISOTROPIC])
-    likelihood = np.exp(-0.5 * (costs - costs.min()))
-    likelihood[likelihood < LEAST_SHARE] = 0.0
-    return {one: float(own / likelihood.sum()) for one, own in zip(_ISOTROPIC, likelihood, strict=True) if own}
-
-
-def likeliest(cost: Callable[[Stiffness], float], begin: Stiffness) -> Stiffness:
-    """The stiffness of less cost than all near it: from one to begin with to the first of those near it that costs less, as long as there is one."""
-    known, best = cache(cost), begin
-    while (less := next((one for one in best.near() if known(one) < known(best)), None)) is not None:
-        best = less
-    return best
-
-
-def likeliest_of_cosines(seen: Bools, value: Floats, weight: float) -> Stiffness:
-    """The stiffness that were the likeliest if all cells were seen alike: the cosines of their values are independent then, `value` (m,) of those that are
-    `seen` (rows, columns), and of the nearest of them elsewhere. Where to begin."""
-    number = np.zeros(seen.shape, dtype=np.int64)
-    number[seen] = np.arange(len(value))
-
-    def filled(way: int) -> Floats:
-        nearest = ndimage.distance_transform_edt(~seen[::way], return_distances=False, return_indices=True)
-        return np.asarray(value[number[::way][tuple(nearest)]][::way])
-
-    # From both ends of the face: of two as near the first is taken.
-    square = weight * fft.dctn(0.5 * (filled(1) + filled(-1)), norm="ortho").ravel()[1:] ** 2
-    eigenvalues = _path_eigenvalues(*seen.shape)
-
-    def cost(stiffness: Stiffness) -> float:
-        variance = 1.0 + 1.0 / _penalised(eigenvalues, stiffness)
-        return float((np.log(variance) + square / variance).sum())
-
-    return likeliest(cost, min(_ALL, key=cost))
-
-
 @lru_cache(maxsize=2)
 def _random(number: int) -> Floats:
     """(number, `DRAWS` / 2) draws from N(0, 1), the same for all surfaces of one size."""
@@ -463,7 +375,7 @@ def _differences(shape: tuple[int, ...]) -> tuple[Ints, Floats, tuple[Floats, Fl
     order, number = _numbers(shape).ravel(), min(2 * min(rows, columns) + 3, rows * columns)
     bands = np.stack([_lower(sparse.csr_array(one), number, order) for one in (z, p, z @ z, 2.0 * (z @ p), p @ p)])
     which = np.flatnonzero(bands.any(axis=(0, 2)))
-    return which, np.ascontiguousarray(bands[:, which]), _path_eigenvalues(rows, columns)
+    return which, np.ascontiguousarray(bands[:, which]), path_eigenvalues(rows, columns)
 
 
 def _precision(information: Floats, shape: tuple[int, ...], usual: float, stiffness: Stiffness) -> Floats:
@@ -474,19 +386,6 @@ def _precision(information: Floats, shape: tuple[int, ...], usual: float, stiffn
     precision = information.copy(order="F")
     precision[which] += np.tensordot(factors, differences, 1)
     return precision
-
-
-def _penalised(eigenvalues: tuple[Floats, Floats], stiffness: Stiffness) -> Floats:
-    """Eigenvalues of Q but that of the level, where the cells weigh 1; `eigenvalues` of L_z and of L_p."""
-    along, across = eigenvalues
-    both = (stiffness.stretch * along[:, None] + across / stiffness.stretch).ravel()[1:]
-    return np.asarray(stiffness.stiffness * both * (stiffness.tension + both), dtype=np.float64)
-
-
-def _path_eigenvalues(rows: int, columns: int) -> tuple[Floats, Floats]:
-    """Eigenvalues of `_path` of so many rows, and of so many columns: those of cosines."""
-    along, across = (2.0 - 2.0 * np.cos(np.pi * np.arange(number) / number) for number in (rows, columns))
-    return along, across
 
 
 def _path(number: int) -> sparse.csr_array:

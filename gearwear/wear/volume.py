@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy import ndimage
@@ -18,7 +18,8 @@ from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
 from gearwear.wear.made_apart import made_apart
-from gearwear.wear.surface import FEWEST_SEEN, AsStiff, SideSurface
+from gearwear.wear.stiffness import AsStiff
+from gearwear.wear.surface import FEWEST_SEEN, SideSurface
 from gearwear.wear.uncertainty import CellErrors, edge_covariance, ending_below, region_weights, torn_beyond
 from gearwear.wear.weights import SideWeights, by_side
 
@@ -76,7 +77,7 @@ class Volumes:
     pitted: Bools
     rest: Floats
     apart: Floats
-    as_stiff: StiffnessOf
+    as_stiff: StiffnessOf = field(default_factory=dict)
 
 
 def region_volumes(

@@ -9,12 +9,18 @@ import numpy as np
 import pytest
 from scipy import fft, stats
 
-from gearwear.wear.surface import (
+from gearwear.wear.stiffness import (
     APART,
     STIFFNESS,
     TENSION,
-    SideSurface,
     Stiffness,
+    likeliest,
+    likeliest_of_cosines,
+    penalised,
+    shares_of_likelihood,
+)
+from gearwear.wear.surface import (
+    SideSurface,
     _at_points,
     _differences,
     _from_other_end,
@@ -22,11 +28,7 @@ from gearwear.wear.surface import (
     _numbers,
     _over_cells,
     _over_windows,
-    _penalised,
     _precision,
-    likeliest,
-    likeliest_of_cosines,
-    shares_of_likelihood,
 )
 
 NOISE = 0.004
@@ -260,7 +262,7 @@ def test_of_cells_seen_alike_the_likeliest_stiffness_is_that_of_the_whole_grid(s
 
     def cost(stiffness):
         asked.append(stiffness)
-        variance = 1.0 + 1.0 / _penalised((along, across), stiffness)
+        variance = 1.0 + 1.0 / penalised((along, across), stiffness)
         return float((np.log(variance) + square / variance).sum())
 
     grid = [
@@ -333,7 +335,7 @@ def test_bending_costs_along_the_face_and_along_the_profile_what_the_stiffness_s
         nothing = np.zeros((2 * min(shape) + 7, math.prod(count + 2 for count in shape)))
         return written_out(_precision(nothing, shape, 1.0, Stiffness(along, across, tension)))
 
-    eigenvalues = np.sort(_penalised(_differences(shape)[2], Stiffness(along, across, 0.1)))
+    eigenvalues = np.sort(penalised(_differences(shape)[2], Stiffness(along, across, 0.1)))
     np.testing.assert_allclose(np.linalg.eigvalsh(dense(0.1))[1:], eigenvalues, rtol=1e-6, atol=1e-9)
     number = _numbers(shape)
     for axis, decade in enumerate((along, across)):
