@@ -14,11 +14,12 @@ from gearwear.comparison.contributions import PutBack, band_points
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import MADE
-from gearwear.wear.hollows import find_hollows
+from gearwear.wear.flank_arcs import worn_arcs
+from gearwear.wear.hollows import find_hollows, pitted
 from gearwear.wear.regions import Wear
 from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.thickness import SectionThickness, thickness_of
-from gearwear.wear.unmeasured import thinnest_unmeasured
+from gearwear.wear.unmeasured import unmeasured_teeth
 
 
 def thickness_and_changes(
@@ -72,9 +73,11 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
         return thickness
     corrected = measured.corrected
     cells = corrected.with_deviation(corrected.points.deviation - measured.manufacture)
-    told = thickness.as_made, measured.noise, measured.loop
-    hollows = find_hollows(cells, wear.mask, measured.worn_sides, thickness.widths, sections, *told)
-    return replace(thickness, hollows=hollows, unmeasured=thinnest_unmeasured(thickness, wear, cells.grid, sections.band.reach))
+    arcs = worn_arcs(cells, wear.mask, measured.worn_sides, sections.band, measured.noise, measured.loop)
+    if arcs is None:
+        return thickness
+    hollows = find_hollows(arcs, pitted(cells), measured.worn_sides, thickness.widths, sections, thickness.as_made)
+    return replace(thickness, hollows=hollows, unmeasured=unmeasured_teeth(thickness, wear, arcs))
 
 
 def _sections_gone(measured: MeasuredGear, sections: SectionSums) -> Bools:

@@ -21,7 +21,7 @@ from gearwear.wear.bend import LEAST_SPREAD, without_ridge
 from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
 from gearwear.wear.section_sums import SectionSums
-from gearwear.wear.tooth_summary import MostLost, ThinnestTooth, ToothSummary
+from gearwear.wear.tooth_summary import MostLost, ThinnestTooth, ToothSummary, UnmeasuredTeeth
 
 LEAST_POINTS = 3
 ENOUGH_POINTS = 12
@@ -84,8 +84,8 @@ class SectionThickness(Card):
     drawn, made : (teeth, n_z) float or None
         Arc as it is drawn, and what effects of the maker add to it, mm: both are known between the places that are measured and up to the ends of the
         face, so that pooled sections are about both in their middle. None: the same in all sections.
-    unmeasured : ThinnestTooth or None
-        The thinnest of the worn teeth of which few sections have enough points, by their wear.
+    unmeasured : UnmeasuredTeeth or None
+        The worn teeth of which few sections have enough points, by the surfaces of their flanks.
     otherwise : (float, float)
         How much thinner (≤ 0) and thicker (≥ 0) all teeth are, mm of arc, were effects that are taken for made or measured of the other kind, where the
         scan does not tell: a coat for thick teeth.
@@ -112,7 +112,7 @@ class SectionThickness(Card):
     drawn: Floats | None = None
     made: Floats | None = None
     otherwise: tuple[float, float] = (0.0, 0.0)
-    unmeasured: ThinnestTooth | None = None
+    unmeasured: UnmeasuredTeeth | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -291,7 +291,7 @@ class SectionThickness(Card):
     def _teeth(self) -> tuple[ToothSummary, ...]:
         least, at_z, _ = self._least_arc
         lost, _, _ = self._most_lost
-        nan, result = math.nan, []
+        nan, result = math.nan, list[ToothSummary]()
         for tooth, arc in enumerate(self.arc):
             if not np.isfinite(least.value[tooth]):
                 result.append(ToothSummary(tooth, self.nominal, mean=nan, least=nan, greatest_loss=nan, at_z=nan, std=nan))
@@ -313,6 +313,11 @@ class SectionThickness(Card):
                     loss_std=math.hypot(lost.std[tooth], self._made_std[tooth]),
                 )
             )
+        # One truth: where a tooth is thinnest by its surfaces, its own line says so.
+        for other in () if self.unmeasured is None else self.unmeasured.teeth:
+            if not result[other.tooth].least < other.value:
+                own = result[other.tooth]
+                result[other.tooth] = replace(own, least=other.value, least_std=other.std, at_z=other.at_z)
         return tuple(result)
 
     @cached_property
@@ -327,9 +332,10 @@ class SectionThickness(Card):
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
             low = min(low, float(self.arc[at] - self.std[at]))
         if self.unmeasured is not None:
-            if self.unmeasured.value < value:
-                return replace(self.unmeasured, high=min(high, self.unmeasured.high))
-            low = min(low, self.unmeasured.low)
+            other = self.unmeasured.least
+            low, high = min(low, other.low + self.otherwise[0]), min(high, other.high + self.otherwise[1])
+            if other.value < value:
+                return replace(other, low=low, high=high)
         nominal = self.nominal if self.drawn is None else float(drawn[least.curve])
         return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]), nominal)
 

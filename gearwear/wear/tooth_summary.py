@@ -69,6 +69,22 @@ class ThinnestTooth:
 
 
 @dataclass(frozen=True, slots=True)
+class UnmeasuredTeeth:
+    """Teeth that few sections measured.
+
+    Parameters
+    ----------
+    teeth : tuple of ThinnestTooth
+        Each where it is thinnest.
+    least : ThinnestTooth
+        The thinnest of them.
+    """
+
+    teeth: tuple[ThinnestTooth, ...]
+    least: ThinnestTooth
+
+
+@dataclass(frozen=True, slots=True)
 class MostLost:
     """The greatest loss of thickness of the gear, without the bias of having looked for it among many noisy ones.
 

@@ -1,59 +1,115 @@
-"""The thickness of worn teeth of which few sections have enough points: by the surface of their wear, which rests on the points of the whole flank."""
+"""The thickness of worn teeth of which few sections have enough points: by the surfaces of their flanks, which rest on all points of these.
+
+What a surface says where nobody saw the flank is no thickness: only sections in which every worn flank of the tooth has points about the radius are
+looked at. How high a surface lies there, next to the ridge that wear leaves at the pitch point, is known from the teeth that both sections and
+surfaces measured.
+"""
 
 from __future__ import annotations
 
 import math
+import warnings
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy import ndimage
 
+from gearwear.arrays import Floats
 from gearwear.design.quantity import NORMAL_95
-from gearwear.placing.cells import CellGrid
+from gearwear.design.side import Side
+from gearwear.robust import scale_about
+from gearwear.wear.flank_arcs import FlankArcs, WornArcs
+from gearwear.wear.least import least_of_curves
 from gearwear.wear.regions import Wear
 from gearwear.wear.thickness import SectionThickness
-from gearwear.wear.tooth_summary import ThinnestTooth
-
-ABOUT = 3
-"""Cells along the profile and along the face over which the depth at the radius is averaged."""
+from gearwear.wear.tooth_summary import ThinnestTooth, UnmeasuredTeeth
 
 MEASURED = 0.5
-"""Share of its sections from which on a tooth counts as measured."""
+"""Share of its sections from which on a tooth counts as measured; of measured teeth, of those that must have a section for it to count."""
+FEWEST_TEETH = 5
+"""Measured teeth that say how high surfaces lie."""
 
 
-def thinnest_unmeasured(thickness: SectionThickness, wear: Wear, grid: CellGrid, roll: float) -> ThinnestTooth | None:
-    """The thinnest of the worn teeth that few sections measured.
+def unmeasured_teeth(thickness: SectionThickness, wear: Wear, arcs: WornArcs) -> UnmeasuredTeeth | None:
+    """Of the worn teeth that few sections measured; None where every worn tooth was measured, or nothing is known of the others.
 
     Parameters
     ----------
     thickness : SectionThickness
     wear : Wear
-    grid : CellGrid
-    roll : float
-        Length of roll at the radius where thickness is measured, mm.
+    arcs : WornArcs
+        The flanks of worn teeth.
 
-    Returns
-    -------
-    ThinnestTooth or None
-        As thick as it was made less the depth of its wear there, known as well as the deepest place of each flank; None where every worn tooth was measured.
+    Notes
+    -----
+    Where few teeth were measured, how high a surface lies is known as well as the deepest places of the flanks are.
     """
-    arc, as_made, z, turn = thickness.arc, thickness.as_made, thickness.z, thickness.turn
-    column = grid.fillet + int(grid.flank_column(roll))
-    about = slice(max(column - ABOUT // 2, grid.fillet), column + ABOUT // 2 + 1)
-    heights, found = grid.row_middles, list[ThinnestTooth]()
-    for tooth in sorted({region.tooth for region in wear.regions}):
-        if np.isfinite(arc[tooth]).mean() >= MEASURED or not np.isfinite(as_made[tooth]).any():
+    arc, as_made, z = thickness.arc, thickness.as_made, thickness.z
+    seen = np.isfinite(arc)
+    measured = seen.mean(axis=1) >= MEASURED
+    # Not those at chamfered ends, which no tooth has.
+    usual = seen[measured].mean(axis=0) >= MEASURED if measured.any() else np.ones(len(z), dtype=np.bool_)
+    measurable = arcs.measurable()
+    off, found = list[Floats](), dict[int, Floats]()
+    for tooth in np.flatnonzero(arcs.worn.any(axis=1)).tolist():
+        own = [arcs.of[tooth, side].expected[0] for side in Side if (tooth, side) in arcs.of]
+        if len(own) == 2 and measured[tooth]:
+            off.append(arc[tooth] - as_made[tooth] - sum(own))
+        elif own and not measured[tooth]:
+            found[tooth] = as_made[tooth] + sum(own)
+    level, apart = _level(np.array(off)[:, usual]) if len(off) >= FEWEST_TEETH else (0.0, math.nan)
+    rows = list[tuple[int, int, float, float]]()
+    for tooth, curve in found.items():
+        here = usual & np.isfinite(curve) & measurable[tooth]
+        known = apart if math.isfinite(apart) else _by_regions(wear, tooth, thickness.turn)
+        if not here.any() or not math.isfinite(known):
             continue
-        lost = turn * wear.depth[tooth, :, :, about].mean(axis=2).sum(axis=0)
-        left = np.interp(heights, z, as_made[tooth]) - ndimage.uniform_filter1d(lost, ABOUT, mode="nearest")
-        row = int(np.argmin(left))
-        std = turn * math.hypot(*(region.max_depth_std for region in wear.regions if region.tooth == tooth))
-        value, made = float(left[row]), float(np.interp(heights[row], z, as_made[tooth]))
-        if math.isfinite(std):
-            reach = NORMAL_95 * std
-            found.append(ThinnestTooth(tooth, value, std, value - reach, min(value + reach, made), float(heights[row]), made))
-    if not found:
-        return None
+        curve[usual] += level
+        # Each surface that is drawn has its own least: their mean and scatter are what is known of it.
+        drawn = _drawn([arcs.of[tooth, side] for side in Side if (tooth, side) in arcs.of])
+        least = np.where(here, curve + drawn, np.inf).min(axis=1)
+        at = int(np.argmin(np.where(here, curve, np.inf)))
+        rows.append((tooth, at, float(least.mean()), math.hypot(known, float(least.std()))))
+    return _of_rows(rows, thickness) if rows else None
+
+
+def _drawn(flanks: Sequence[FlankArcs]) -> Floats:
+    """What surfaces drawn for the flanks of a tooth are off the expected ones at the radius, (draws, n_z) mm: both have the same random numbers, and
+    turned these are independent."""
+    drawn = [flank.drawn()[0] - flank.expected[0] for flank in flanks]
+    return np.asarray(sum(np.roll(values, (len(values) // 4) * place, axis=0) for place, values in enumerate(drawn)))
+
+
+def _level(off: Floats) -> tuple[Floats, float]:
+    """What measured teeth lie off their surfaces, in each section (n_z,), and how far it differs from tooth to tooth, mm, from (teeth, n_z)."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a section that none of them has
+        level = np.nan_to_num(np.nanmedian(off, axis=0), nan=float(np.nanmedian(off)))
+        return level, scale_about(np.nanmean(off - level, axis=1))
+
+
+def _of_rows(rows: list[tuple[int, int, float, float]], thickness: SectionThickness) -> UnmeasuredTeeth:
+    """Of tooth, section, arc and its standard deviation by itself: each, and the least of all, without the bias of having looked for it."""
+    teeth = tuple(_tooth(tooth, at, value, std, thickness) for tooth, at, value, std in rows)
+    if len(teeth) == 1:  # nothing was looked for
+        return UnmeasuredTeeth(teeth, teeth[0])
+    value, std = (np.array([row[place] for row in rows])[:, None] for place in (2, 3))
+    least = least_of_curves(value, std)
+    tooth, at = rows[least.curve][:2]
+    of_all = _tooth(tooth, at, least.overall, least.overall_std, thickness)
     # Any of them may be the thinnest.
-    low, high = (min(getattr(one, end) for one in found) for end in ("low", "high"))
-    return replace(min(found, key=lambda one: one.value), low=low, high=high)
+    return UnmeasuredTeeth(teeth, replace(of_all, low=min(of_all.low, *(one.low for one in teeth))))
+
+
+def _tooth(tooth: int, at: int, value: float, std: float, thickness: SectionThickness) -> ThinnestTooth:
+    std = math.hypot(std, thickness.common_std)
+    made, reach = float(thickness.as_made[tooth, at]), NORMAL_95 * std
+    nominal = thickness.nominal if thickness.drawn is None else float(thickness.drawn[tooth, at])
+    # No thicker than it was made.
+    high = max(value, min(value + reach, made))
+    return ThinnestTooth(tooth, value, std, value - reach, high, float(thickness.z[at]), nominal)
+
+
+def _by_regions(wear: Wear, tooth: int, turn: float) -> float:
+    """As well as the deepest places of a tooth's flanks are known, mm of arc."""
+    return turn * math.hypot(*(region.max_depth_std for region in wear.regions if region.tooth == tooth))

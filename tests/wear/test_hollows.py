@@ -11,7 +11,8 @@ from scipy import stats
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.placing.cells import CellGrid, bin_points
-from gearwear.wear.hollows import ACROSS, _Arcs, _within, find_hollows
+from gearwear.wear.flank_arcs import ACROSS, FlankArcs, worn_arcs
+from gearwear.wear.hollows import _within, find_hollows, pitted
 from gearwear.wear.regions import find_wear
 from gearwear.wear.section_sums import SectionBand, SectionSums
 from gearwear.wear.thickness import SectionThickness
@@ -45,9 +46,11 @@ def measured(points: SurfacePoints, worn: frozenset[Side] = frozenset()) -> tupl
     cells = bin_points(points, CellGrid.for_scan(GEAR, POINTS))
     wear = find_wear(cells, NOISE, worn)
     alone = section_thickness(points, GEAR, NOISE)
-    hollows = find_hollows(
-        cells, wear.mask, worn, alone.widths, SectionSums.of(points, SectionBand.of(GEAR)), alone.as_made, NOISE, None
-    )
+    sections = SectionSums.of(points, SectionBand.of(GEAR))
+    arcs = worn_arcs(cells, wear.mask, worn, sections.band, NOISE, None)
+    if arcs is None:
+        return alone, alone
+    hollows = find_hollows(arcs, pitted(cells), worn, alone.widths, sections, alone.as_made)
     return alone, replace(alone, hollows=hollows)
 
 
@@ -86,12 +89,46 @@ def test_an_unworn_gear_is_asked_for_no_hollow():
     assert found.thinnest() == alone.thinnest()
 
 
+def test_steep_wear_that_is_alike_along_the_face_has_no_hollow():
+    """It bends within cells, most of all by the form circle: where their few points happen to lie is no form. By its formula the flank runs straight
+    along the face."""
+    points = scanned(6, 0.0, 1.0, 6.0)
+    roll, band = points.own_roll(GEAR), SectionBand.of(GEAR)
+    slope, turn_over = 0.02, GEAR.reference_roll + 1.5 * band.half
+    lost = (slope * np.maximum(turn_over - roll, 0.0) + 0.6 * np.exp((GEAR.form_roll - roll) / 0.8)) * (points.side == 1)
+    _, found = measured(points.with_deviation(points.deviation - lost), frozenset({Side.LEFT}))
+    true = NOMINAL - TURN * slope * 1.5 * band.half
+    off = np.array([tooth.least for tooth in found.teeth()]) - true
+    assert len(found.hollows.teeth) == GEAR.teeth
+    of_median = 1.253 * np.median([tooth.least_std for tooth in found.teeth()]) / np.sqrt(GEAR.teeth)
+    assert abs(np.median(off)) < 3.0 * of_median
+    assert found.thinnest().low <= true <= found.thinnest().high
+
+
 ALIKE = np.ones((2, 41))
+
+
+def within(flanks, number, made, width, seen=None):
+    """Of sections that were all seen, where nothing else is said."""
+    return _within(flanks, number, made, width, np.ones(len(made), dtype=bool) if seen is None else seen)
+
+
+def test_a_bottom_that_nobody_saw_is_none():
+    """A surface that runs on downwards from what was seen: the least is that of what was seen."""
+    a, half, n = 0.001, 4, 41
+    slope = -a * np.arange(n)
+    curve = np.tile(slope, (1 + len(ACROSS), 8, 1))
+    flanks, flat = [in_sections(curve), in_sections(0.0 * curve)], np.zeros(n)
+    seen = np.arange(n) <= 20
+    assert within(flanks, ALIKE, flat, 9)[0][20] == pytest.approx(a * (half + 2))
+    assert within(flanks, ALIKE, flat, 9, seen)[0][20] == pytest.approx(0.0)
+    assert within(flanks, ALIKE, flat, 9, seen)[0][18] == pytest.approx(a * 2)
+    assert within(flanks, ALIKE, flat, 9, seen)[0][35] == 0.0
 
 
 def in_sections(values):
     """Arcs of which each coefficient is that of a section."""
-    return _Arcs.of(values, np.eye(values.shape[-1]))
+    return FlankArcs.of(values, np.eye(values.shape[-1]))
 
 
 def test_within_a_window_a_parabola_hides_what_its_mean_says():
@@ -99,19 +136,19 @@ def test_within_a_window_a_parabola_hides_what_its_mean_says():
     a, half, n = 0.001, 4, 41
     parabola, flat = a * (np.arange(n) - 20.0) ** 2, np.zeros(n)
     curve = np.tile(parabola, (1 + len(ACROSS), 8, 1))
-    depth, std, spread = _within([in_sections(curve)] * 2, ALIKE, flat, 2 * half + 1)
+    depth, std, spread = within([in_sections(curve)] * 2, ALIKE, flat, 2 * half + 1)
     assert depth[20] == pytest.approx(2.0 * a * half * (half + 1) / 3.0)
     assert spread[:, 20] == pytest.approx([(a * np.arange(-half, half + 1) ** 2).std()] * 2)
     assert std == pytest.approx(flat, abs=1e-12)
     # The same as it was made with spreads nothing that a scan of few points could miss.
-    by_make = _within([in_sections(0.0 * curve)] * 2, ALIKE, 2.0 * parabola, 2 * half + 1)
+    by_make = within([in_sections(0.0 * curve)] * 2, ALIKE, 2.0 * parabola, 2 * half + 1)
     assert by_make[0] == pytest.approx(depth)
     assert by_make[2] == pytest.approx(np.zeros((2, n)), abs=1e-12)
     # Cut off at the end of the face; the least is looked for half a window beyond its own.
     assert depth[0] == pytest.approx(2.0 * (parabola[: half + 1].mean() - parabola[half + 2]))
     # The band lies 5 µm above the radius itself.
     above = curve + 0.005 * (np.arange(len(curve)) > 0)[:, None, None]
-    assert _within([in_sections(above), in_sections(curve)], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)
+    assert within([in_sections(above), in_sections(curve)], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)
 
 
 def test_a_flank_that_is_even_along_the_face_has_no_hollow_but_by_chance():
@@ -121,14 +158,14 @@ def test_a_flank_that_is_even_along_the_face_has_no_hollow_but_by_chance():
     flat, none = np.zeros(number), np.zeros((1 + len(ACROSS), 200, number))
     expected, draws = 0.001 * random.standard_normal(number), 0.001 * random.standard_normal((200, number))
     even = in_sections(none + expected + draws)
-    depth, _, _ = _within([even, in_sections(none)], np.ones((2, number)), flat, 2 * half + 1)
+    depth, _, _ = within([even, in_sections(none)], np.ones((2, number)), flat, 2 * half + 1)
     by_chance = [
         expected[i - half : i + half + 1].mean() - expected[i - half : i + half + 1].min() for i in range(half, number - half)
     ]
     assert 0.3 < (depth == 0.0).mean() < 0.7
     assert depth.mean() < 0.5 * np.mean(by_chance)
     hollow = expected + np.where(np.arange(number) == 200, -0.01, 0.0)
-    deep, _, _ = _within([in_sections(none + hollow + draws), in_sections(none)], np.ones((2, number)), flat, 2 * half + 1)
+    deep, _, _ = within([in_sections(none + hollow + draws), in_sections(none)], np.ones((2, number)), flat, 2 * half + 1)
     plain = (none + hollow + draws).mean(axis=1)[0]
     assert deep[200] == pytest.approx(plain[196:205].mean() - plain[200], rel=0.05)
 
@@ -137,9 +174,9 @@ def test_arcs_by_few_coefficients_are_those_in_all_sections():
     """Less what flanks have in common, too: surfaces are kept by what is along the face, however many sections lie across it."""
     rng = np.random.default_rng(4)
     few, at, shared = rng.normal(size=(6, 40, 9)), rng.uniform(size=(41, 9)), rng.normal(size=(6, 41))
-    by_few = [_Arcs.of(values, at).without(shared) for values in (few, few + 1.0)]
+    by_few = [FlankArcs.of(values, at).without(shared) for values in (few, few + 1.0)]
     in_all = [in_sections(values @ at.T - shared[:, None]) for values in (few, few + 1.0)]
-    for one, other in zip(*(_within(flanks, ALIKE, np.zeros(41), 5) for flanks in (by_few, in_all)), strict=True):
+    for one, other in zip(*(within(flanks, ALIKE, np.zeros(41), 5) for flanks in (by_few, in_all)), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-12)
     assert by_few[0].at_radius.size == 40 * 9
 
@@ -150,7 +187,7 @@ def test_the_mean_of_a_section_is_that_of_its_points():
     parabola = a * (np.arange(n) - 20.0) ** 2
     curve, number = np.tile(parabola, (1 + len(ACROSS), 8, 1)), np.zeros((2, n))
     number[0, 23], number[1, 20] = 12.0, 12.0
-    depth, _, spread = _within([in_sections(curve)] * 2, number, np.zeros(n), 9)
+    depth, _, spread = within([in_sections(curve)] * 2, number, np.zeros(n), 9)
     assert depth[20] == pytest.approx(a * 3.0**2, rel=1e-5)
     assert spread[:, 20] == pytest.approx([0.0, 0.0], abs=1e-5)
 
@@ -159,7 +196,7 @@ def test_a_lean_across_the_band_hides_nothing_and_spreads_nothing():
     """Sections have the straight line through their points."""
     curve = np.zeros((1 + len(ACROSS), 8, 41))
     curve[1:] += 0.05 * ACROSS[:, None, None]
-    for values in _within([in_sections(curve), in_sections(0.0 * curve)], ALIKE, np.zeros(41), 5):
+    for values in within([in_sections(curve), in_sections(0.0 * curve)], ALIKE, np.zeros(41), 5):
         assert values == pytest.approx(np.zeros(values.shape), abs=1e-12)
 
 

@@ -9,46 +9,84 @@ import numpy as np
 import pytest
 
 from gearwear.design.side import Side
-from gearwear.wear.unmeasured import thinnest_unmeasured
+from gearwear.wear.flank_arcs import FlankArcs, WornArcs
+from gearwear.wear.unmeasured import FEWEST_TEETH, unmeasured_teeth
 
-ROWS, FILLET, FLANK, TURN = 12, 3, 9, 1.1
-ROLL = FILLET + 4
-"""Where thickness is measured: in the fifth column of the flank."""
-
-
-def worn(depths, measured=(), stds=0.01):
-    """The thinnest of four teeth 6 mm thick, some of them worn by so much (mm) on one side or both over rows 4 to 8, of which some have sections."""
-    grid = SimpleNamespace(fillet=FILLET, flank_column=lambda roll: 4, row_middles=np.linspace(0.5, 11.5, ROWS))
-    depth, regions = np.zeros((4, 2, ROWS, FILLET + FLANK)), []
-    for (tooth, side), deep in depths.items():
-        depth[tooth, side.index, 4:8, FILLET:] = deep
-        regions.append(SimpleNamespace(tooth=tooth, side=side, max_depth_std=stds))
-    arc = np.full((4, 24), np.nan)
-    arc[list(measured)] = 6.0
-    thickness = SimpleNamespace(arc=arc, as_made=np.full((4, 24), 6.0), z=np.linspace(0.25, 11.75, 24), turn=TURN)
-    return thinnest_unmeasured(thickness, SimpleNamespace(depth=depth, regions=regions), grid, ROLL)
+TEETH, N, TURN = 9, 24, 1.1
+Z = np.linspace(0.25, 11.75, N)
 
 
-def test_it_is_as_made_less_the_wear_of_both_flanks():
-    least = worn({(1, Side.LEFT): 0.10, (1, Side.RIGHT): 0.05, (2, Side.LEFT): 0.12})
-    assert least.tooth == 1 and least.value == pytest.approx(6.0 - TURN * 0.15)
-    assert least.std == pytest.approx(TURN * 0.01 * math.sqrt(2.0))
-    assert 4.0 < least.at_z < 8.0 and least.nominal == 6.0
+def arcs_of(curves, stds=0.0, seen=None):
+    """Of (tooth, side): what each flank's arc differs by from as made, (n_z,) or a number, mm; drawn evenly either way."""
+    both, worn = {}, np.zeros((TEETH, 2), dtype=bool)
+    for (tooth, side), curve in curves.items():
+        draws = np.broadcast_to(curve, (6, 2, N)) + stds * np.array([1.0, -1.0])[:, None]
+        both[tooth, side], worn[tooth, side.index] = FlankArcs.of(draws, np.eye(N)), True
+    return WornArcs(both, np.ones((TEETH, 2, N), dtype=bool) if seen is None else seen, worn)
 
 
-def test_any_of_them_may_be_the_thinnest():
-    one, two = worn({(1, Side.LEFT): 0.10}), worn({(2, Side.LEFT): 0.09}, stds=0.05)
-    both = worn({(1, Side.LEFT): 0.10, (2, Side.LEFT): 0.09}, stds=0.05)
-    assert both.tooth == 1 and both.low == pytest.approx(one.value - 1.96 * TURN * 0.05, rel=1e-4)
-    assert both.high <= two.high
+def found(arcs, measured=None, region_std=0.01, arc=6.0):
+    """Of teeth made 6 mm thick; `measured` are their arcs in sections by tooth."""
+    section = np.full((TEETH, N), np.nan)
+    for tooth, value in (measured or {}).items():
+        section[tooth] = value
+    regions = [SimpleNamespace(tooth=tooth, side=side, max_depth_std=region_std) for tooth, side in arcs.of]
+    thickness = SimpleNamespace(
+        arc=section, as_made=np.full((TEETH, N), 6.0), z=Z, turn=TURN, nominal=6.0, drawn=None, common_std=0.0
+    )
+    return unmeasured_teeth(thickness, SimpleNamespace(regions=regions), arcs)
+
+
+def test_it_is_as_made_with_both_flanks_where_they_are_lowest():
+    dip = -0.1 * np.exp(-((Z - 5.0) ** 2))
+    told = found(arcs_of({(1, Side.LEFT): dip, (1, Side.RIGHT): np.full(N, -0.05)}))
+    assert told.teeth == (told.least,)
+    assert told.least.tooth == 1 and told.least.value == pytest.approx(6.0 - 0.05 - np.abs(dip).max())
+    assert abs(told.least.at_z - 5.0) < 0.5
+    assert told.least.std == pytest.approx(TURN * 0.01 * math.sqrt(2.0))
+
+
+def test_where_nobody_saw_the_flank_its_surface_is_no_thickness():
+    """It runs down to 0.1 mm beyond the last points."""
+    curve, seen = np.where(Z > 8.0, -0.1, -0.02), np.ones((TEETH, 2, N), dtype=bool)
+    seen[1, Side.LEFT.index] = Z < 8.0
+    one = {(1, Side.LEFT): curve}
+    assert found(arcs_of(one)).least.value == pytest.approx(5.9)
+    assert found(arcs_of(one, seen=seen)).least.value == pytest.approx(5.98)
+    seen[1, Side.LEFT.index] = False
+    assert found(arcs_of(one, seen=seen)) is None
+
+
+def test_how_high_surfaces_lie_is_known_from_teeth_that_sections_measured():
+    """These lie 20 µm above theirs at one end and 40 at the other, give or take 3; one was chipped and counts for nothing."""
+    curves = {(tooth, side): np.zeros(N) for tooth in range(FEWEST_TEETH + 2) for side in Side}
+    rise = 0.02 + 0.02 * (Z - Z[0]) / (Z[-1] - Z[0])
+    apart = 0.003 * np.linspace(-1.0, 1.0, FEWEST_TEETH)
+    measured = {tooth: 6.0 + rise + apart[tooth] for tooth in range(FEWEST_TEETH)} | {FEWEST_TEETH: 5.0 + 0.0 * rise}
+    told = found(arcs_of(curves, stds=0.001), measured, region_std=1.0)
+    (tooth,) = told.teeth
+    assert tooth.tooth == FEWEST_TEETH + 1
+    assert tooth.value == pytest.approx(6.02, abs=0.002) and tooth.at_z < 1.0
+    assert 0.001 < tooth.std < 0.006
+    few = {tooth: measured[tooth] for tooth in range(FEWEST_TEETH - 1)}
+    assert found(arcs_of(curves), few, region_std=1.0).teeth[0].std > 1.0
+
+
+def test_any_of_them_may_be_the_thinnest_and_none_is_for_having_looked():
+    """Of eight alike that are known to 10 µm the lowest is low by its luck."""
+    values = 6.0 - 0.2 + 0.01 * np.random.default_rng(3).standard_normal(8)
+    told = found(arcs_of({(tooth, Side.LEFT): values[tooth] - 6.0 for tooth in range(8)}), region_std=0.01 / TURN)
+    assert told.least.tooth == values.argmin()
+    assert values.min() + 0.005 < told.least.value < values.mean() + 0.005
+    assert told.least.low < 5.8 < told.least.high
 
 
 @pytest.mark.parametrize("measured", [(1,), (0, 1, 2, 3)])
 def test_of_teeth_that_sections_measured_nothing_is_said(measured):
-    assert worn({(1, Side.LEFT): 0.10}, measured) is None
+    assert found(arcs_of({(1, Side.LEFT): -0.1}), dict.fromkeys(measured, 6.0)) is None
 
 
 def test_no_more_is_said_than_is_known():
-    assert worn({(1, Side.LEFT): 0.10}, stds=math.nan) is None
-    assert worn({}) is None
-    assert worn({(1, Side.LEFT): 0.01}).high == 6.0  # no thicker than it was made
+    assert found(arcs_of({(1, Side.LEFT): -0.1}), region_std=math.nan) is None
+    assert found(arcs_of({})) is None
+    assert found(arcs_of({(1, Side.LEFT): -0.001})).least.high == 6.0  # no thicker than it was made
