@@ -14,6 +14,7 @@ from gearwear.design.quantity import NORMAL_95, counted, pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.as_views import may_be_views
+from gearwear.diagnose.bowed import bow_of_sound
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
@@ -374,7 +375,8 @@ def account(
         if one.kind is Kind.MANUFACTURE
         and not (told and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
     ]
-    made = _made_on(problem.context.open_sides, fit, [form_of_all(patterns, len(fit.target)), *off])
+    bowed = bow_of_sound(fit, model, problem.context.worn) if problem.context.open_sides else 0.0
+    made = _made_on(problem.context.open_sides, fit, [form_of_all(patterns, len(fit.target)), *off], 2.0 * bowed)
     hidden = fit.hidden(model, noise)
     start, end = steps[len(levels)], steps[-1]
     return Loop(
@@ -452,13 +454,14 @@ def form_of_all(patterns: tuple[Pattern, ...], cells: int) -> Floats:
     return np.asarray(np.sum([np.zeros(cells), *forms], axis=0), dtype=np.float64)
 
 
-def _made_on(worn: frozenset[Side], fit: Fit, off: list[Floats]) -> Floats:
+def _made_on(worn: frozenset[Side], fit: Fit, off: list[Floats], bowed: float = 0.0) -> Floats:
     """(m, sides) how high sides worn throughout may stand as they were made, where it cannot be seen, mm: all over a side as much as what the maker
-    left of each kind, `off` (m,), varies over the flanks that are seen (RMS). Who is off by that in form and pitch is no better in thickness."""
+    left of each kind, `off` (m,), varies over the flanks that are seen (RMS): who is off by that in form and pitch is no better in thickness. And as
+    sound flanks are `bowed` besides, mm: as the pose has these on the line, what they lie low is on the worn ones, and these may be bowed alike."""
     points = fit.cells.points
     flank = (points.surface == FLANK) & fit.cells.seen
     seen = fit.use & flank if (fit.use & flank).any() else fit.use
-    size = math.sqrt(sum(float(np.var(field[seen])) for field in off)) if seen.any() else 0.0
+    size = math.hypot(bowed, *(float(np.std(field[seen])) for field in off)) if seen.any() else 0.0
     sides = [np.where(flank & (points.side == int(side)), size, 0.0) for side in sorted(worn) if size > 0.0]
     return np.column_stack([np.zeros((len(fit.target), 0)), *sides])
 

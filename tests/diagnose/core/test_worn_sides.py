@@ -165,6 +165,8 @@ def test_a_form_of_the_coast_side_that_nothing_explains_may_be_on_the_worn_side_
     turns = np.where(flank, 0.009 * (-1.0) ** points.tooth, 0.0)
     (both,) = _made_on(LEFT, fit, [form, turns, np.full(len(field), 0.05)]).T
     assert both[left] == pytest.approx(np.hypot(0.012 / np.sqrt(2.0), 0.009), rel=0.01)
+    (bowed,) = _made_on(LEFT, fit, [turns], 0.012).T
+    assert bowed[left] == pytest.approx(0.015, rel=0.01)
 
 
 @pytest.mark.long
