@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from scipy import stats
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.placing.cells import CellGrid, bin_points
-from gearwear.wear.flank_arcs import ACROSS, FlankArcs, worn_arcs
+from gearwear.wear.flank_arcs import ACROSS, FlankArcs, _as_they_scatter, worn_arcs
 from gearwear.wear.hollows import _within, find_hollows, pitted
 from gearwear.wear.regions import find_wear
 from gearwear.wear.section_sums import SectionBand, SectionSums
@@ -111,6 +112,27 @@ ALIKE = np.ones((2, 41))
 def within(flanks, number, made, width, seen=None):
     """Of sections that were all seen, where nothing else is said."""
     return _within(flanks, number, made, width, np.ones(len(made), dtype=bool) if seen is None else seen)
+
+
+def test_cells_are_as_sure_as_they_scatter_along_the_face_on_the_side_that_is_worn():
+    """Means that scatter three times their deviation on left flanks have nine times the variance; those that scatter by it, and right flanks, keep theirs."""
+    shape = (12, 2, 40, 6)
+    scatter = np.where(np.arange(shape[3]) < 3, 3.0, 1.0) * 0.002
+    means = SimpleNamespace(
+        variance=np.full(shape, 0.002**2),
+        held=np.ones(shape, dtype=bool),
+        deviation=scatter * np.random.default_rng(2).normal(size=shape),
+        offset=np.zeros((2, *shape)),
+    )
+    worn = np.zeros(shape, dtype=bool)
+    worn[:6, 0] = True
+    variance = _as_they_scatter(means, slice(0, None), worn) / means.variance
+    assert variance[:6, 0, :, :3] == pytest.approx(9.0, rel=0.3)
+    assert variance[:6, 0, :, 3:] == pytest.approx(1.0, rel=0.3)
+    assert (variance[6:] == 1.0).all() and (variance[:, 1] == 1.0).all()
+    few = np.zeros(shape, dtype=bool)
+    few[:2, 0] = True  # of two flanks of twelve it may be their form
+    assert _as_they_scatter(means, slice(0, None), few) == pytest.approx(means.variance)
 
 
 def test_a_bottom_that_nobody_saw_is_none():
