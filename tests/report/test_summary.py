@@ -21,7 +21,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.diagnose.pattern import Pattern
-from gearwear.report.words.terminal import ASCII, lines, print_summary, written
+from gearwear.report.words.terminal import ASCII, lines, print_summary, to_a_clause, written
 from gearwear.report.words.verdict import doubts, key_figures, loop_words, subject, verdict
 from gearwear.wear.breakage import Broken
 from tests.report.fake import bare_results, changed, fake_results, real_results
@@ -372,3 +372,24 @@ def test_files_that_have_no_room_are_counted(number):
     assert "…" not in said and said.startswith("Written to out: file_number_0.stl")
     assert said.endswith(f"and {number - told} more" if told < number else names[-1])
     assert len(written("out", names, 80)) <= 2
+
+
+@pytest.mark.parametrize("most", [1, 2, 3, 4])
+def test_what_has_no_room_is_left_out_from_the_end_of_a_clause_on(most):
+    """A verdict that ends "on flanks that stand out it is …" said neither what it is nor that the report does."""
+    clauses = [
+        "the flanks are smooth but low against the tips (thinner teeth, or the same loss, of all of them)",
+        "they cannot tell",
+        "it may be off",
+    ]
+    text = f"{clauses[0]}: {clauses[1]}, and {clauses[2]}; {' and so on' * 20}."
+    said = to_a_clause(text, 80, most)
+    joined = " ".join(said).replace("\u00a0", " ")
+    assert len(said) <= most
+    if most == 1:  # not even the first clause has room
+        assert joined.endswith("…")
+    else:
+        kept = joined.removesuffix(" (more in the report).")
+        assert kept in (clauses[0], f"{clauses[0]}: {clauses[1]}", f"{clauses[0]}: {clauses[1]}, and {clauses[2]}")
+        assert joined != kept
+    assert to_a_clause("All of it.", 80, 1) == ["All of it."]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDEST = 100
+CLAUSE, MORE = re.compile(r"[;:,.](?=\s)"), " (more in the report)."
+"""Where a clause ends, and what is said in the place of those for which there is no room."""
 ASCII = str.maketrans({
     "−": "-", "µ": "u", "→": "->", "±": "+/-", "³": "3", "²": "2", "·": "-", "…": "...", "α": "alpha", "–": "-", "°": " deg",
     "×": "x", "\u00a0": " ", "’": "'",
@@ -73,7 +76,9 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     """The summary as lines no wider than `width`, with the rich style of each; at most 21 of them."""
     said = [(_cut(subject(results.part, results.gear, results.measured.scans, width), width), "dim"), ("", "")]
     grave, broken = grave_doubts(results), broken_words(results)
-    said += [(line, "bold yellow" if grave else "bold") for line in wrapped(verdict(results), width, 5 if grave or broken else 4)]
+    said += [
+        (line, "bold yellow" if grave else "bold") for line in to_a_clause(verdict(results), width, 5 if grave or broken else 4)
+    ]
     said.append(("", ""))
     figures = [(figure.name, unbroken(figure.value), figure.note) for figure in key_figures(results)]
     wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
@@ -94,7 +99,7 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     room = 3 if grave or broken else 4
     for i, text in enumerate(warned):
         free = room - (i + 1 < len(warned))  # a line for how many more there are
-        warning = wrapped(f"! {text}", width, max(free, 1) if i == 0 else len(text))
+        warning = to_a_clause(f"! {text}", width, max(free, 1) if i == 0 else len(text))
         if len(warning) > free:
             said.append((f"! and {len(warned) - i} more, in the report" if i else _cut(f"! {text}", width), "yellow"))
             break
@@ -152,6 +157,17 @@ def _found(results: Results, where: bool, correlated: bool, most: int, named: bo
 def wrapped(text: str, width: int, most: int) -> list[str]:
     """At most so many lines of a width; what is cut off stands in the report."""
     return textwrap.wrap(unbroken(text), width, max_lines=most, placeholder=" …", break_on_hyphens=False)
+
+
+def to_a_clause(text: str, width: int, most: int) -> list[str]:
+    """At most so many lines of a width; what has no room is left out from the end of a clause on, and said to stand in the report."""
+    said = wrapped(text, width, most + 1)
+    ends = [found.start() for found in CLAUSE.finditer(text)]
+    while len(said) > most and ends:
+        kept = text[: ends.pop()]
+        if kept.count("(") == kept.count(")"):
+            said = wrapped(kept + MORE, width, most + 1)
+    return said if len(said) <= most else wrapped(text, width, most)
 
 
 def _clauses(note: str, room: int) -> str:
