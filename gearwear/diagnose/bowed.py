@@ -16,9 +16,6 @@ from gearwear.design.surface import FLANK
 from gearwear.diagnose.effects.base import helix_place, profile_coordinate
 from gearwear.diagnose.fit import Fit, Model
 
-FEWEST_TEETH = 3
-"""Teeth from which on they tell how far a bow is chance."""
-
 
 def bow_of_sound(fit: Fit, model: Model, worn: frozenset[Side]) -> float:
     """By how much the sound flanks lie lower or higher in their mean than at their middle beside a model, mm; 0 of no sound side, or of no more than chance.
@@ -41,9 +38,9 @@ def bow_of_sound(fit: Fit, model: Model, worn: frozenset[Side]) -> float:
     flank = (points.surface == FLANK) & fit.cells.seen & ~np.isin(points.side, [int(side) for side in worn])
     used = flank & fit.use
     tooth, teeth = np.unique(points.tooth[used], return_inverse=True)
-    if len(tooth) < FEWEST_TEETH:
-        return 0.0
     design, weight = _design(fit, used), fit.weight[used]
+    if len(tooth) <= design.shape[1]:  # of fewer nothing tells how far a bow is chance
+        return 0.0
     inverse = np.linalg.pinv(design.T @ (weight[:, None] * design), rcond=1e-9, hermitian=True)
     residual = fit.residual(model)[used]
     sizes = inverse @ (design.T @ (weight * residual))

@@ -326,16 +326,17 @@ class SectionThickness(Card):
             return None
         least, at_z, drawn = self._least_arc
         value, std = least.overall, least.overall_std
-        low, high = value - NORMAL_95 * std + self.otherwise[0], value + NORMAL_95 * std + self.otherwise[1]
+        low, high = value - NORMAL_95 * std, value + NORMAL_95 * std
         if self.pooled > 1:
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
             low = min(low, float(self.arc[at] - self.std[at]))
         if self.unmeasured is not None:
             other = self.unmeasured.least
-            low, high = min(low, other.low + self.otherwise[0]), min(high, other.high + self.otherwise[1])
-            if other.value < value:
-                return replace(other, low=low, high=high)
+            low, high = min(low, other.low), min(high, other.high)
+        low, high = low + self.otherwise[0], high + self.otherwise[1]
+        if self.unmeasured is not None and self.unmeasured.least.value < value:
+            return replace(self.unmeasured.least, low=low, high=high)
         nominal = self.nominal if self.drawn is None else float(drawn[least.curve])
         return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]), nominal)
 
