@@ -134,7 +134,7 @@ MUTATIONS = [
         ("diagnose/flanks_differ.py", "spread[own] > float", "spread[own] > 4.0 * float", "diagnose/core/test_flanks_differ.py"),
         ("diagnose/flanks_differ.py", "by_noise[other] * float(chdtri(freedom, p)) / freedom", "0.0", "diagnose/core/test_flanks_differ.py"),
         ("diagnose/by_tooth.py", "for _ in range(2):", "for _ in range(0):", "diagnose/core/test_shapes.py"),
-        ("wear/thickness.py", "+ self.otherwise[0]", "", "comparison/test_coat_or_thick.py"),
+        ("wear/thickness.py", "+ self.otherwise[0]", "", "wear/test_thickness.py"),
         ("report/words/lost.py", "wear.volume < NORMAL_95 * wear.volume_std", "False", "report/test_words.py"),
         ("report/words/lost.py", "WIDE = 4.0", "WIDE = 1e9", "report/test_summary.py"),
         ("report/words/lost.py", "and depth[0] <= 0.0", "", "report/test_summary.py"),

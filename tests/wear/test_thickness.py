@@ -343,3 +343,13 @@ def test_the_nominal_is_as_drawn():
     np.testing.assert_allclose(found.arc[:, middle], found.nominal, rtol=0.0, atol=1e-5)
     u = 2.0 * (gear.reference_roll - gear.form_roll) / (gear.tip_roll - gear.form_roll) - 1.0
     assert found.nominal == pytest.approx(nominal_arc(R) + 0.04 * u * R / RB, abs=1e-9)
+
+
+@pytest.mark.parametrize("points", [6_000, 30_000])
+def test_what_else_made_the_teeth_so_widens_the_interval_by_as_much(points):
+    """A coat of 20 µm of arc that may be none, and a scale of 30 µm that may be one: by these, and the value stays."""
+    known = measured("a worn flank", points)
+    plain, told = known.thinnest(), replace(known, otherwise=(-0.020, 0.030)).thinnest()
+    assert (told.value, told.std, told.tooth) == (plain.value, plain.std, plain.tooth)
+    assert told.low == pytest.approx(plain.low - 0.020, abs=1e-12)
+    assert told.high == pytest.approx(plain.high + 0.030, abs=1e-12)
