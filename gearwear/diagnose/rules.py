@@ -243,7 +243,7 @@ class Rules:
     bent: float = rule(
         0.4,
         "1",
-        "tuned, scans not recorded",
+        "tuned: without it a real gear (kw_199) is hollow by 12 µm on a side whose form is 3 µm",
         "several effects that each explain less than this share of their size draw a curve that none of them is",
         off=0.0,
     )
