@@ -331,12 +331,12 @@ class SectionThickness(Card):
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
             low = min(low, float(self.arc[at] - self.std[at]))
-        if self.unmeasured is not None:
-            other = self.unmeasured.least
+        other = None if self.unmeasured is None else self.unmeasured.least
+        if other is not None:
             low, high = min(low, other.low), min(high, other.high)
         low, high = low + self.otherwise[0], high + self.otherwise[1]
-        if self.unmeasured is not None and self.unmeasured.least.value < value:
-            return replace(self.unmeasured.least, low=low, high=high)
+        if other is not None and other.value < value:
+            return replace(other, low=low, high=high)
         nominal = self.nominal if self.drawn is None else float(drawn[least.curve])
         return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]), nominal)
 

@@ -123,7 +123,7 @@ def region_volumes(
         nothing, none = np.zeros(0), np.zeros((0, 0))
         return Volumes(
             value=nothing, certainty=nothing, together=nothing, covariance=none, filled=filled, deepest=np.zeros((0, 2)),
-            pitted=np.zeros(0, dtype=np.bool_), rest=nothing, apart=np.zeros(len(Side)), as_stiff={},
+            pitted=np.zeros(0, dtype=np.bool_), rest=nothing, apart=np.zeros(len(Side)),
         )  # fmt: skip
     torn, slope = torn_beyond(sheets, filled, noise, worn)
     ending = ending_below(sheets, filled, noise, worn, cells.grid.gear.undercut)
