@@ -21,6 +21,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.loaded.study import load_left_out
 from gearwear.placing.datum import LOW, Datum, bends_otherwise, taken_for_unworn
 from gearwear.wear.regions import UNIT, Wear
+from gearwear.wear.tooth_summary import DriftSeam
 from gearwear.wear_law.study import Ahead
 
 HALVES = "double helical: taper, twist and feed marks are not looked for; the halves are inspected one by one"
@@ -38,6 +39,7 @@ def notes_of(
     before: SameTeeth | None,
     pair: PairResult | None,
     ahead: Ahead | None,
+    seam: DriftSeam | None = None,
 ) -> tuple[str, ...]:
     """All notes of a comparison, each a sentence.
 
@@ -54,6 +56,8 @@ def notes_of(
     pair : PairResult or None
     ahead : Ahead or None
         What was to be forecast.
+    seam : DriftSeam or None
+        The tooth that is told too thin or too thick were pitch errors a drift of the scan.
     """
     gear, unworn = measured.gear, before is not None
     return (
@@ -62,6 +66,7 @@ def notes_of(
         *take_each_other_back(measured.loop),
         *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn) else ()),
         *worn_notes(measured, wear, unworn),
+        *((seam_note(seam),) if seam is not None else ()),
         *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
         *edge_notes(wear),
         *scanner_notes(design.scanner, measured.placed.registration.noise),
@@ -102,6 +107,15 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     else:
         borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them", others)
     return _with_datum(measured, replace(datum, borne_out="" if said else borne_out))
+
+
+def seam_note(seam: DriftSeam) -> str:
+    """That a tooth may be told wrong for where the scan began."""
+    told, lost = ("thinner", "less") if seam.thicker > 0.0 else ("thicker", "more")
+    return (
+        f"tooth {seam.tooth + 1} is told {significant(1e3 * abs(seam.thicker), 2)} µm {told} than it is if the pitch errors, which step there, are a drift of"
+        f" the scan: its flanks are then from the beginning and the end of the turn, and it has lost {lost}"
+    )
 
 
 def _with_datum(measured: MeasuredGear, datum: Datum) -> MeasuredGear:

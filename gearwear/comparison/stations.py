@@ -143,7 +143,7 @@ def compare(
         inspection=inspected[0] if len(inspected) == 1 else None,
         halves=inspected if len(inspected) == 2 else (),
         changes=(*changes, *thicker, *(() if met is None else met.changes)),
-        notes=notes_of(design, measured, remarks, wear, scanned.same, pair, ahead),
+        notes=notes_of(design, measured, remarks, wear, scanned.same, pair, ahead, thickness.seam),
         before_files=() if scanned.unworn is None else tuple(name for scan in scanned.unworn.scans for name in scan.files),
         same_teeth=scanned.same,
         patterns=kept_patterns(measured),

@@ -12,6 +12,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change, thickness_changes
 from gearwear.comparison.contributions import PutBack, band_points
 from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.seam import with_seam
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import MADE
 from gearwear.wear.flank_arcs import worn_arcs
@@ -31,6 +32,7 @@ def thickness_and_changes(
     if unworn is not None:
         made_arc = corrected_thickness(unworn, unworn.sections).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
+    thickness = with_seam(measured, thickness)
     if effects is None:
         return thickness, ()
     raw = replace(corrected_thickness(measured, measured.raw_sections), hollows=thickness.hollows)

@@ -278,7 +278,11 @@ class Loop(Card):
 
     def as_other(self, effect: FoundEffect, points: SurfacePoints) -> Floats:
         """By how much the gear would stand higher at points (n,) were one of `either` of the other kind, mm."""
-        return self._sum([effect], points) * (1.0 if effect.kind in MEASURED else -1.0)
+        return self.of_effect(effect, points) * (1.0 if effect.kind in MEASURED else -1.0)
+
+    def of_effect(self, effect: FoundEffect, points: SurfacePoints) -> Floats:
+        """What one of the effects does to the deviation of points, mm, (n,)."""
+        return self._sum([effect], points)
 
     def surely_made(self, points: SurfacePoints) -> Floats:
         """What the maker did to the deviation of points, mm, (n,), without what the scanner may have done as well."""

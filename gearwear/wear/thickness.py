@@ -21,7 +21,7 @@ from gearwear.wear.bend import LEAST_SPREAD, without_ridge
 from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
 from gearwear.wear.section_sums import SectionSums
-from gearwear.wear.tooth_summary import MostLost, ThinnestTooth, ToothSummary, UnmeasuredTeeth
+from gearwear.wear.tooth_summary import DriftSeam, MostLost, ThinnestTooth, ToothSummary, UnmeasuredTeeth
 
 LEAST_POINTS = 3
 ENOUGH_POINTS = 12
@@ -89,6 +89,8 @@ class SectionThickness(Card):
     otherwise : (float, float)
         How much thinner (≤ 0) and thicker (≥ 0) all teeth are, mm of arc, were effects that are taken for made or measured of the other kind, where the
         scan does not tell: a coat for thick teeth.
+    seam : DriftSeam or None
+        What it is were pitch errors a drift of the scan; None where that is not open, or changes nothing.
     """
 
     radius: float
@@ -113,6 +115,7 @@ class SectionThickness(Card):
     made: Floats | None = None
     otherwise: tuple[float, float] = (0.0, 0.0)
     unmeasured: UnmeasuredTeeth | None = None
+    seam: DriftSeam | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -335,6 +338,8 @@ class SectionThickness(Card):
         if other is not None:
             low, high = min(low, other.low), min(high, other.high)
         low, high = low + self.otherwise[0], high + self.otherwise[1]
+        if self.seam is not None:
+            low, high = min(low, self.seam.low), max(high, self.seam.high)
         if other is not None and other.value < value:
             return replace(other, low=low, high=high)
         nominal = self.nominal if self.drawn is None else float(drawn[least.curve])

@@ -85,6 +85,26 @@ class UnmeasuredTeeth:
 
 
 @dataclass(frozen=True, slots=True)
+class DriftSeam:
+    """The tooth that the seam of a drift goes through, where what is told as pitch errors may be a drift of the scan.
+
+    Parameters
+    ----------
+    tooth : int
+        0-based.
+    thicker : float
+        By how much it is thicker then than it is told, mm of arc; − thinner.
+    low, high : float
+        95 % interval of the least thickness of the gear then, mm.
+    """
+
+    tooth: int
+    thicker: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
 class MostLost:
     """The greatest loss of thickness of the gear, without the bias of having looked for it among many noisy ones.
 

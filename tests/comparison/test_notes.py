@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import gearwear as gw
-from gearwear.comparison.notes import off_the_drawing, take_each_other_back
+from gearwear.comparison.notes import off_the_drawing, seam_note, take_each_other_back
 from gearwear.comparison.placed_notes import SMOOTHED, smoothing_of
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
@@ -18,6 +18,7 @@ from gearwear.diagnose.effects.tip_diameter import EFFECT as TIP_DIAMETER
 from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.report.words.terminal import lines
 from gearwear.report.words.verdict import doubts
+from gearwear.wear.tooth_summary import DriftSeam
 from tests.placing.test_smoothing import flanks, form, smoothed
 from tests.synthetic import Recipe, make_scan
 
@@ -83,6 +84,12 @@ def test_effects_that_take_each_other_back_are_told_as_no_finding():
     (note,) = take_each_other_back(SimpleNamespace(form=form))
     assert note.startswith("profile slope and tip relief fit best together, but of each the others take back most: no finding")
     assert take_each_other_back(SimpleNamespace(form=form[1:2])) == take_each_other_back(None) == ()
+
+
+def test_a_tooth_that_may_be_told_wrong_for_where_the_scan_began_is_named():
+    thin, thick = (seam_note(DriftSeam(7, by, 9.9, 10.0)) for by in (0.0711, -0.0711))
+    assert thin.startswith("tooth 8 is told 71 µm thinner than it is if") and thin.endswith("it has lost less")
+    assert thick.startswith("tooth 8 is told 71 µm thicker than it is if") and thick.endswith("it has lost more")
 
 
 def test_no_note_is_lost_or_said_twice():

@@ -368,10 +368,12 @@ def test_key_figures_carry_their_uncertainty_and_leave_out_what_is_not_there():
 
 
 @pytest.mark.parametrize(
-    ("low", "told"), [(9.650, "9.6611 ± 0.0040 mm"), (9.640, "9.640 to 9.669 mm")], ids=["about even", "far below"]
+    ("low", "high", "told"),
+    [(9.650, 9.669, "9.6611 ± 0.0040 mm"), (9.640, 9.669, "9.640 to 9.669 mm"), (9.650, 9.699, "9.650 to 9.699 mm")],
+    ids=["about even", "far below", "far above"],
 )
-def test_the_thinnest_tooth_is_an_interval_where_that_reaches_far_down(low, told):
-    assert thinnest_words(ThinnestTooth(1, 9.66111, 0.00402, low, 9.669, 3.2, 9.975)).replace(SPACE, " ") == told
+def test_the_thinnest_tooth_is_an_interval_where_that_reaches_far_to_one_hand(low, high, told):
+    assert thinnest_words(ThinnestTooth(1, 9.66111, 0.00402, low, high, 3.2, 9.975)).replace(SPACE, " ") == told
 
 
 @pytest.mark.parametrize(("limits", "told"), [(None, ""), ((0.1159, 0.2591), "116 to 259 µm"), ((0.0, 0.259), "0 to 259 µm")])

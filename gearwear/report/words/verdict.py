@@ -54,7 +54,8 @@ ALIKE = 0.9
 """Correlation of two effects' sizes from which on the scan gives little more than their sum or difference."""
 
 LOPSIDED = 4.0
-"""Standard deviations that the 95 % interval of the thinnest tooth reaches down from which on it is told whole: the bottom may lie deeper, and no higher."""
+"""Standard deviations that the 95 % interval of the thinnest tooth reaches to one hand from which on it is told whole: the bottom of a hollow may lie deeper,
+and no higher; what else may have made the teeth so goes one way."""
 LEAST_NAME = 3
 """Letters of a file's name that are left of it at least."""
 
@@ -386,8 +387,8 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
 
 
 def thinnest_words(tooth: ThinnestTooth) -> str:
-    """The least thickness, with its standard deviation; the 95 % interval in its place where that reaches much further down."""
-    if tooth.value - tooth.low > LOPSIDED * tooth.std > 0.0:
+    """The least thickness, with its standard deviation; the 95 % interval in its place where that reaches much further."""
+    if max(tooth.value - tooth.low, tooth.high - tooth.value) > LOPSIDED * tooth.std > 0.0:
         return f"{number(tooth.low, 3)} to {number(tooth.high, 3)}{SPACE}mm"
     return known(tooth.value, tooth.std, 3, "mm", 0.0)
 
