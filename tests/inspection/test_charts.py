@@ -64,6 +64,8 @@ def test_warnings_on_the_terminal_are_whole_and_the_rest_is_counted(found):
     assert warned(coat, thin, short) == f"! {coat[0].upper()}{coat[1:]}. And 2 more, in inspection.json."
     assert warned(short, short) == f"! O{short[1:]}. O{short[1:]}."
     assert warned() == ""
+    # One that alone has no room goes to the end of a clause, as on the terminal of a comparison.
+    assert warned(f"{short}; {'the same of its neighbours ' * 8}", thin) == f"! O{short[1:]} (more in the report)."
 
 
 def lines(figure, colour):

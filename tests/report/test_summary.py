@@ -21,7 +21,8 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.diagnose.pattern import Pattern
-from gearwear.report.words.terminal import ASCII, lines, print_summary, to_a_clause, written
+from gearwear.report.words.clauses import to_a_clause
+from gearwear.report.words.terminal import ASCII, lines, print_summary, written
 from gearwear.report.words.verdict import doubts, key_figures, loop_words, subject, verdict
 from gearwear.wear.breakage import Broken
 from tests.report.fake import bare_results, changed, fake_results, real_results

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import gearwear
 from gearwear.design.pair import Design
-from gearwear.design.quantity import MISSING, SPACE, number, sentence, unbroken
+from gearwear.design.quantity import MISSING, SPACE, number, sentence
 from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import Loop
@@ -29,6 +29,7 @@ from gearwear.report.files.writing import write_csv, write_json
 from gearwear.report.records.comparison import details_record, effect_record
 from gearwear.report.records.inspection import about_axis_record, as_dict
 from gearwear.report.records.numbers import Json
+from gearwear.report.words.clauses import to_a_clause, wrapped
 from gearwear.scan.types import Scan
 
 if TYPE_CHECKING:
@@ -233,13 +234,13 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
 
 
 def _warned(doubts: Sequence[str], room: int) -> list[str]:
-    """As many warnings as so many lines hold, each whole, and how many more there are; the first, where it alone is too long, as far as it goes."""
+    """As many warnings as so many lines hold, each whole, and how many more there are; the first, where it alone is too long, to the end of a clause."""
     for kept in range(len(doubts), 0, -1):
         more = f" And {len(doubts) - kept} more, in inspection.json." if kept < len(doubts) else ""
-        lines = textwrap.wrap(unbroken(f"! {' '.join(map(sentence, doubts[:kept]))}{more}"), 80)
+        lines = wrapped(f"! {' '.join(map(sentence, doubts[:kept]))}{more}", 80, room + 1)
         if len(lines) <= room:
             return lines
-    return textwrap.wrap(unbroken(f"! {sentence(doubts[0])}"), 80, max_lines=room, placeholder=" …") if doubts else []
+    return to_a_clause(f"! {sentence(doubts[0])}", 80, room) if doubts else []
 
 
 def _means(inspection: Inspection) -> list[str]:

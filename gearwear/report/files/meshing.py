@@ -14,8 +14,8 @@ from gearwear.meshing.study import PairStudy, pair_words
 from gearwear.report.figures.arrays import meshing_curves
 from gearwear.report.files.writing import write_csv, write_json
 from gearwear.report.records.meshing import sliding_records, study_record
+from gearwear.report.words.clauses import wrapped
 from gearwear.report.words.loaded import load_words, loaded_lines
-from gearwear.report.words.terminal import wrapped
 from gearwear.report.words.wear_law import law_words
 from gearwear.wear_law.study import WearStudy
 

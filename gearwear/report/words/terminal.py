@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
-import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.comparison.results import Results
 from gearwear.design.quantity import listed, sentence, unbroken
+from gearwear.report.words.clauses import to_a_clause, wrapped
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.numbers import effect_title, or_words
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDEST = 100
-CLAUSE, MORE = re.compile(r"[;:,.](?=\s)"), " (more in the report)."
-"""Where a clause ends, and what is said in the place of those for which there is no room."""
 ASCII = str.maketrans({
     "−": "-", "µ": "u", "→": "->", "±": "+/-", "³": "3", "²": "2", "·": "-", "…": "...", "α": "alpha", "–": "-", "°": " deg",
     "×": "x", "\u00a0": " ", "’": "'",
@@ -152,22 +149,6 @@ def _found(results: Results, where: bool, correlated: bool, most: int, named: bo
         text = sentence(f"{'besides wear' if worn else 'the scan shows'}: {listed([*said, *more])}")
         text = " ".join([text, *(map(sentence, alike_words(results)) if correlated else ())])
     return f"{sentence(unexplained_words(loop, results.gear, where))} {text}" if loop.patterns else text
-
-
-def wrapped(text: str, width: int, most: int) -> list[str]:
-    """At most so many lines of a width; what is cut off stands in the report."""
-    return textwrap.wrap(unbroken(text), width, max_lines=most, placeholder=" …", break_on_hyphens=False)
-
-
-def to_a_clause(text: str, width: int, most: int) -> list[str]:
-    """At most so many lines of a width; what has no room is left out from the end of a clause on, and said to stand in the report."""
-    said = wrapped(text, width, most + 1)
-    ends = [found.start() for found in CLAUSE.finditer(text)]
-    while len(said) > most and ends:
-        kept = text[: ends.pop()]
-        if kept.count("(") == kept.count(")"):
-            said = wrapped(kept + MORE, width, most + 1)
-    return said if len(said) <= most else wrapped(text, width, most)
 
 
 def _clauses(note: str, room: int) -> str:
