@@ -13,6 +13,7 @@ import multiprocessing
 import os
 import sys
 import time
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +33,11 @@ def main(arguments: list[str] | None = None) -> None:
     begun, scores = time.perf_counter(), []
     with multiprocessing.get_context("spawn").Pool(options.workers) as pool:
         tasks = [(label, options.seed, options.points) for label in labels]
-        for score in pool.imap(_run, tasks):
+        for score in kept(pool.imap(_run, tasks), options.details):
             scores.append(score)
             if sys.stderr.isatty():
                 print(f"\r{len(scores)} of {len(labels)}", end="", file=sys.stderr, flush=True)
     print(f"\r{len(scores)} scans in {time.perf_counter() - begun:.0f} s", file=sys.stderr)
-    if options.details:
-        Path(options.details).write_text("".join(json.dumps(score) + "\n" for score in scores))
 
     from benchmarks.loop_study.table import markdown
     from gearwear import __version__
@@ -49,6 +48,18 @@ def main(arguments: list[str] | None = None) -> None:
         Path(options.out).write_text(page)
     else:
         print(page)
+
+
+def kept(scores: Iterable[dict[str, Any]], file: str | None) -> Iterator[dict[str, Any]]:
+    """The scores, each written as a line of JSON as it comes, where there is a file: a study that is killed keeps what it had."""
+    if not file:
+        yield from scores
+        return
+    with open(file, "w", encoding="utf-8") as lines:
+        for score in scores:
+            lines.write(json.dumps(score) + "\n")
+            lines.flush()
+            yield score
 
 
 def _run(task: tuple[str, int, int]) -> dict[str, Any]:
@@ -68,7 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--points", type=int, default=40_000, help="of each scan, about (default: %(default)s)")
     parser.add_argument("--workers", type=int, default=2, help="processes (default: %(default)s)")
     parser.add_argument("--out", metavar="FILE", help="where the page is written (default: the terminal)")
-    parser.add_argument("--details", metavar="FILE", help="where a JSON line for each scan is written")
+    parser.add_argument("--details", metavar="FILE", help="where a JSON line for each scan is written as it comes")
     parser.add_argument("--only", metavar="N", help="one scan by its number, truth against found: 37, or n37 for a null scan")
     return parser
 
