@@ -14,7 +14,7 @@ from gearwear.comparison.placed_notes import beside_views
 from gearwear.comparison.relocated import FinalMotion, Relocation, clip_of, is_far, with_pits
 from gearwear.comparison.which_gear import check_part
 from gearwear.design.pair import Design
-from gearwear.design.side import Side
+from gearwear.design.side import Side, sides_given
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.loop import Loop, close_loop
@@ -86,8 +86,14 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
         As `register` gives it; what is returned has its `loop`, and the points located again where the loop moved them.
     worn : frozenset of Side or None
         Sides that are known to be worn throughout; None: the scan decides.
+
+    Raises
+    ------
+    InputError
+        If `measured` or `worn` is something else.
     """
     check_kind(measured, MeasuredGear, "measured", "what gw.register returns")
+    worn = None if worn is None else sides_given(worn, "worn")
     scan = _Scan(measured, measured.first, measured.placed.located, worn=worn)
     look = scan.looked_at()
     if look is not None:

@@ -410,6 +410,7 @@ class Gear(Card):
 
     def drawn(self, side: Side) -> DrawnFlank:
         """The modification of the flanks of one side, along the transverse base tangent."""
+        side = Side.of(side)
         modification, own = self.spec.left if side is Side.LEFT else self.spec.right, (self.form_roll, self.tip_roll)
         return DrawnFlank(modification, side, *(self.spec.modified_between or own), self.base_radius, self.face_width, own)
 

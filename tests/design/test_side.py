@@ -5,7 +5,7 @@ import pytest
 
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import nominal_profiles
-from gearwear.design.side import Side
+from gearwear.design.side import Side, sides_given
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import flank_points
 from gearwear.errors import InputError
@@ -26,7 +26,8 @@ def test_the_left_flank_lies_counter_clockwise_of_its_tooth(side):
 
 @pytest.mark.parametrize("given", [Side.RIGHT, -1, "right"])
 def test_a_side_by_its_sign_and_by_its_name(given):
-    assert Side.of(given) is Side.RIGHT
+    assert Side.of(given) is Side(given) is Side.RIGHT
+    assert PINION.drawn(given).side is Side.RIGHT
 
 
 @pytest.mark.parametrize("given", [0, 2, "", "Left", True, None, 1.5])
@@ -35,6 +36,18 @@ def test_anything_else_is_refused(given):
         Side.of(given)
     with pytest.raises(InputError, match="would be right"):
         mesh_contact(nominal_profiles(PINION), nominal_profiles(WHEEL), 114.3, given)
+    with pytest.raises(InputError, match="would be right"):
+        PINION.drawn(given)
+    if given is not True:  # which equals 1, and to Python is that member
+        with pytest.raises(InputError, match=f"^side {given!r}: gw.Side.LEFT or gw.Side.RIGHT"):
+            Side(given)
+
+
+@pytest.mark.parametrize("given", ["left", Side.LEFT, 1, {"up"}, [0]])
+def test_sides_are_a_set_of_sides(given):
+    assert sides_given({"left", Side.RIGHT}, "worn") == frozenset(Side) and sides_given((), "worn") == frozenset()
+    with pytest.raises(InputError, match=r"^(worn|side) .*gw\.Side\.LEFT.* would be right"):
+        sides_given(given, "worn")
 
 
 @pytest.mark.parametrize("contact", [mesh_contact, linear_contact])
