@@ -358,7 +358,7 @@ MUTATIONS = [
         ("wear/stiffness.py", "0.25 * (self.along - self.across)", "0.25 * (self.across - self.along)", "wear/test_surface.py"),
         ("wear/surface.py", "s**2, 1.0, s**-2]", "s, 1.0, 1.0 / s]", "wear/test_surface.py"),
         ("wear/volume.py", "+ edge_covariance(self.sheets, self.torn, self.slope, weights)", "", "wear/test_volume.py"),
-        ("wear/uncertainty.py", "form @ form.T", "0.0", "wear/test_volume.py"),
+        ("wear/uncertainty.py", "form @ form.T", "0.0", "wear/test_uncertainty.py"),
         ("wear/uncertainty.py", "seen * (whole / np.maximum(known, 1e-300))[:, None, None, None, None]", "seen", "wear/test_volume.py"),
         ("wear/thickness.py", "LEAST_POINTS = 3", "LEAST_POINTS = 1", "wear/test_thickness.py"),
         ("wear/thickness.py", "ENOUGH_POINTS = 12", "ENOUGH_POINTS = 9", "wear/test_thickness.py"),
@@ -427,7 +427,7 @@ MUTATIONS = [
         ("wear_law/teeth.py", "LEAST_RELATIVE_SPREAD = 0.1", "LEAST_RELATIVE_SPREAD = 0.0", "wear_law/test_teeth.py"),
         ("wear_law/teeth.py", "LEAST_TEETH = 3", "LEAST_TEETH = 5", "wear_law/test_teeth.py"),
         ("wear_law/sides.py", "LEAST_DEPTH_STDS = 2.0", "LEAST_DEPTH_STDS = 0.0", "wear_law/test_laws.py"),
-        ("wear_law/study.py", "LEAST_EXPLAINED = 0.5", "LEAST_EXPLAINED = 0.05", "wear_law/test_laws.py wear_law/test_wear_study.py"),
+        ("wear_law/study.py", "LEAST_EXPLAINED = 0.5", "LEAST_EXPLAINED = 0.05", "wear_law/test_wear_fit.py wear_law/test_laws.py wear_law/test_wear_study.py"),
         # helical gears
         ("design/surface.py", "(within - gear.base_half_angle)) * cos_helix", "(within - gear.base_half_angle))", "design/test_helical.py"),
         ("design/surface.py", "return (distance + lever * turn) * cosine", "return distance * cosine", "design/test_helical.py"),

@@ -149,7 +149,7 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
         )
     if not planar:
         _check_kind(placed, gear, fitting)
-        return _width_seen(placed.measured, gear)
+        return width_seen(placed.measured, gear)
     return gear.face_width
 
 
@@ -378,7 +378,7 @@ def seen_radii(placed: PlacedScan, gear: Gear) -> SeenRadii:
     return SeenRadii(base_radius(placed.located, gear), lands.tip_radius, lands.root_radius)
 
 
-def _width_seen(points: Floats, gear: Gear) -> float:
+def width_seen(points: Floats, gear: Gear) -> float:
     """The face width of a scan, mm, where it is not the design's but near it; refused where it is neither. `points` in the design frame, mm."""
     sample = untwisted(gear, _some(points, gear))
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]

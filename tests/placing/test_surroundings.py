@@ -15,7 +15,7 @@ from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK
 from gearwear.errors import InputError, NotThisGear
 from gearwear.identify.survey import seems
-from gearwear.placing.refusal import base_radius, rims
+from gearwear.placing.refusal import base_radius, rims, width_seen
 from tests.commands.doors import EXAMPLE, PAIR
 from tests.synthetic import PINION, Recipe, make_scan
 
@@ -102,6 +102,13 @@ def test_a_face_width_some_per_cent_off_is_told_and_the_seen_one_is_used(written
     found = placed(scan(), face_width=written)
     assert found.gear.face_width == pytest.approx(15.0, abs=0.01)
     assert any(f"face_width is {written:g} mm: taken as seen" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(("written", "taken"), [(14.5, 15.0), (14.9, 14.9), (15.1, 15.1), (15.5, 15.0)])
+def test_a_face_width_is_the_seen_one_from_a_few_per_cent_on(written, taken):
+    """0.5 mm of 15 is no tolerance of a face width, and 0.1 mm is: both end faces of the scan are known to some hundredths."""
+    in_the_middle = scan() + np.array([0.0, 0.0, 0.5 * (written - 15.0)])
+    assert width_seen(in_the_middle, design(face_width=written).gears["gear"]) == pytest.approx(taken, abs=0.02)
 
 
 def test_teeth_of_which_only_a_part_of_the_width_was_seen_are_no_contradiction():

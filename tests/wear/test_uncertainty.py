@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gearwear.diagnose.covariance import CellCovariance
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear import places, regions
 from gearwear.wear.regions import common_level_std, deepest_to_mean, find_wear
-from gearwear.wear.uncertainty import edge_covariance, torn_beyond
+from gearwear.wear.uncertainty import CellErrors, edge_covariance, torn_beyond
 from gearwear.wear.volume import Volumes
 from tests.placing.cells import every_cell, flanks_of, with_flanks
 from tests.placing.placing import designed
@@ -127,6 +128,21 @@ def test_what_the_same_cells_come_to_on_sides_without_wear_is_in_it(high, low):
     white = number * (NOISE * area) ** 2 / 4.0  # four points a cell: what is known of the noise is not counted twice
     expected = each.mean() ** 2 + max(each.var() - white, 0.0)
     assert variance[1.0] - variance[0.0] == pytest.approx(expected, rel=0.01)
+
+
+def test_an_effect_whose_form_is_not_known_errs_alike_in_all_volumes():
+    """That it is off by so many of its fields is one number each for the whole gear: (Σ a f)² of each, and what two volumes have of it in common."""
+    random, cells = np.random.default_rng(1), every_cell(GEAR, 0.5)
+    grid, count = cells.grid, len(cells.count)
+    none, fields = np.zeros((count, 0)), random.normal(0.0, 1e-3, (count, 2))
+    white = CellCovariance(grid, NOISE**2 / np.maximum(cells.count, 1.0), 0.0, 0.0, 0.0)
+    weights = random.uniform(0.0, 0.25, (3, *grid.side_shape)) * (random.random((3, *grid.side_shape)) < 0.1)
+    sums = np.array([[float(np.sum(one * grid.sides(field))) for field in fields.T] for one in weights])
+    by_noise, by_form = (
+        CellErrors(white, none, none[:0], none, none[:0], hidden).covariance_of(weights) for hidden in (none, fields)
+    )
+    assert by_form - by_noise == pytest.approx(np.outer(sums[:, 0], sums[:, 0]) + np.outer(sums[:, 1], sums[:, 1]), rel=1e-9)
+    assert (np.diag(by_form) > 1.01 * np.diag(by_noise)).any()
 
 
 def torn_maps(offset) -> tuple[SideMaps, np.ndarray]:

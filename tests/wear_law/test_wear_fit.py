@@ -8,6 +8,7 @@ import pytest
 from scipy.special import stdtrit
 
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
@@ -17,6 +18,7 @@ from gearwear.wear_law.fit import _covariances, alike_fits, fit_wear_law
 from gearwear.wear_law.forecast import cycles_left, forecast_wear
 from gearwear.wear_law.non_negative import _greater
 from gearwear.wear_law.running import forecast_by_running
+from gearwear.wear_law.study import Ahead, WearStudy, _forecast
 from tests.meshing.worn import design, roll_of, wear
 from tests.wear_law.per_cycle import wear_per_cycle
 
@@ -186,6 +188,20 @@ class TestExplained:
         plain = 1.0 - np.sum((fit.depth - fit.fitted) ** 2) / np.sum(fit.depth**2)
         assert true - plain > 0.01
         assert fit.unexplained_depth == pytest.approx(0.003 / math.sqrt(2.0), rel=0.25)
+
+    @pytest.mark.parametrize("share", [0.2, 0.45, 0.55, 0.9])
+    def test_half_is_the_least_to_go_on_with(self, pinion, wheel, share):
+        """Beside the law a wave on its profile, at right angles to all its terms: of the mean square the law has the share put in."""
+        weight = np.gradient(ROLL)
+        terms = np.column_stack([law(ROLL, *one, "none") for one in np.eye(3)])
+        root = np.sqrt(weight)
+        wave = np.sin(2.0 * np.pi * ROLL / 2.7)
+        wave -= terms @ np.linalg.lstsq(root[:, None] * terms, root * wave)[0]
+        wave *= math.sqrt((1.0 / share - 1.0) * (weight @ law(ROLL) ** 2) / (weight @ wave**2))
+        fits = fit_wear_law(pinion, wheel, C, ROLL, law(ROLL) + wave, np.full(90, 1e-6), LoadSharing.NONE)
+        assert fits[0].explained[0] == pytest.approx(share, abs=0.02)
+        study = _forecast(WearStudy(Side.LEFT, (0, 1, 2), (), fits, ""), Ahead(1e6, (2e6,)))
+        assert (study.forecast is None) == ("half is the least to go on with" in study.why_not) == (share < 0.5)
 
     def test_a_right_law_explains_all(self, pinion, wheel):
         random, runs, sd = np.random.default_rng(5), 200, 0.002
