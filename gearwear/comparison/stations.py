@@ -23,7 +23,7 @@ from gearwear.comparison.thick import thickness_and_changes
 from gearwear.comparison.worn_pair import RunningGear
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.profiles import ToothProfiles
+from gearwear.design.profiles import SectionLoss, ToothProfiles
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.found import Loop
@@ -130,13 +130,15 @@ def compare(
         laws = fit_laws(wear, points, scanned.as_made, measured.context, measured.loop, scanned.scatter, law)
         progress("thickness and inspection")
         changes, (thickness, thicker), inspected, (solids, boolean), undecided, remarks = others()
-    pair = None if met is None else _pair(design, met, thickness)
+    most = thickness.below_drawing()
+    thinner = None if most is None else SectionLoss(most.value, most.tooth, most.at_z)
+    pair = None if met is None else _pair(design, met, thickness, thinner)
     measured = in_accord(measured, wear, scanned.unworn is not None)
     return Results(
         measured=measured,
         seen=seen_radii(measured.placed, measured.gear),
         wear=WearResult(
-            found=wear, before_loop=wear_before, laws=laws, thickness=thickness, worn=lost.worn, present=run.gear.present,
+            found=wear, before_loop=wear_before, laws=laws, thickness=thickness, worn=lost.worn, present=replace(run.gear.present, lost=thinner),
             solids=solids, boolean=boolean, undecided=undecided,
         ),
         pair=pair,
@@ -393,7 +395,7 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     return PlainBoolean(removed, gear.volume - user.volume, pieces)
 
 
-def _pair(design: Design, met: Met, thickness: SectionThickness) -> PairResult:
+def _pair(design: Design, met: Met, thickness: SectionThickness, thinner: SectionLoss | None) -> PairResult:
     pair, contact = design.pair, met.contact
     assert pair is not None
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
@@ -405,7 +407,7 @@ def _pair(design: Design, met: Met, thickness: SectionThickness) -> PairResult:
         published=None if ring else published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),
         contact=contact,
         spread=met.spread,
-        shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 and not ring else None,
+        shafts=None if thinner is None or not thinner.value > 0.0 or ring else take_up(pinion, gear, centre, play, thinner.value),
         drive_side=met.law.side,
         law=met.law,
         loaded=met.loaded,

@@ -22,6 +22,25 @@ ROUNDING = 1e-9
 """mm; of a radius that came from a diameter."""
 
 
+@dataclass(frozen=True, slots=True)
+class SectionLoss:
+    """How much thinner than drawn a tooth is, at most.
+
+    Parameters
+    ----------
+    value : float
+        mm of arc at the reference circle; below 0 where all teeth are thicker than drawn.
+    tooth : int
+        0-based.
+    z : float
+        Height on that tooth, mm.
+    """
+
+    value: float
+    tooth: int
+    z: float
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class ToothProfiles(Card):
     """Half angles of all tooth sides.
@@ -38,6 +57,9 @@ class ToothProfiles(Card):
         ψ in rad from the nominal tooth centre line at the slice's own height; left first (`Side.index`). Less is worn.
     measured : (teeth, 2) bool or None
         The flanks that somebody measured, where others were filled in after them; None: all alike.
+    lost : SectionLoss or None
+        What was measured of the thickness besides, without the bias of having looked for the most; None: it is what the half angles say. Who changes these
+        sets it to None.
     """
 
     gear: Gear
@@ -45,6 +67,7 @@ class ToothProfiles(Card):
     z: Floats
     half_angle: Floats
     measured: Bools | None = None
+    lost: SectionLoss | None = None
 
     def headline(self) -> str:
         known = int(np.isfinite(self.half_angle).all(axis=(2, 3)).sum())

@@ -16,7 +16,7 @@ from gearwear.design.files.traces import read_traces
 from gearwear.design.gear import Gear
 from gearwear.design.given import check_number
 from gearwear.design.pair import Design
-from gearwear.design.profiles import ToothProfiles
+from gearwear.design.profiles import SectionLoss, ToothProfiles
 from gearwear.design.quantity import as_given, at_most, shown, teeth_words
 from gearwear.design.side import Side
 from gearwear.errors import InputError
@@ -131,12 +131,17 @@ def _read(design: Design, wear: Measured) -> tuple[WornGear, ToothProfiles]:
         reader = read_traces if Path(wear).suffix.lower() == ".csv" else read_profiles
         part, profiles = reader(Path(wear), design)
         source = str(wear)
-    lost = _lost_thickness(profiles)
-    words, greatest = f"{part} as measured, {source}", float(lost.max())
-    if greatest <= 0.0:
+    words, most = f"{part} as measured, {source}", _most_lost(profiles) if profiles.lost is None else profiles.lost
+    if most.value <= 0.0:
         return WornGear(part, words, 0.0), profiles
+    return WornGear(part, words, most.value, most.tooth, most.z), profiles
+
+
+def _most_lost(profiles: ToothProfiles) -> SectionLoss:
+    """Where the profiles themselves have lost most thickness."""
+    lost = _lost_thickness(profiles)
     tooth, slice_ = np.unravel_index(int(lost.argmax()), lost.shape)
-    return WornGear(part, words, greatest, int(tooth), float(profiles.z[slice_])), profiles
+    return SectionLoss(float(lost.max()), int(tooth), float(profiles.z[slice_]))
 
 
 def _lost_thickness(profiles: ToothProfiles) -> Floats:

@@ -22,6 +22,7 @@ from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
 from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.tooth_summary import DriftSeam, MostLost, ThinnestTooth, ToothSummary, UnmeasuredTeeth
+from gearwear.wear.windows import about_places, running_sum
 
 LEAST_POINTS = 3
 ENOUGH_POINTS = 12
@@ -161,7 +162,7 @@ class SectionThickness(Card):
         window ends with the face."""
         mean = np.empty_like(made)
         for tooth, width in enumerate(self.widths.tolist()):
-            mean[tooth] = _running_sum(made[tooth], width) / _running_sum(np.ones(made.shape[1]), width)
+            mean[tooth] = running_sum(made[tooth], width) / running_sum(np.ones(made.shape[1]), width)
         return replace(self, arc=self.arc + (made - mean), made=made)
 
     @property
@@ -191,7 +192,7 @@ class SectionThickness(Card):
         place = place[:, (place >= 0).any(axis=0)]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
         drawn, made = (np.zeros_like(arc) if one is None else one for one in (drawn, made))
-        mean_drawn, mean_made, thinnest, drawn_there = _about_places(place, widths, drawn, made)
+        mean_drawn, mean_made, thinnest, drawn_there = about_places(place, widths, drawn, made)
         lost, section_std = np.where(place >= 0, arc[index] - drawn[index] - made[index], np.nan), self.std[index]
         curves = lost + thinnest
         known = np.zeros(teeth, dtype=np.bool_)
@@ -277,6 +278,10 @@ class SectionThickness(Card):
         least, at_z, _ = self._most_lost
         std = math.hypot(least.overall_std, self._made_std[least.curve])
         return MostLost(least.curve, -least.overall, std, float(at_z[least.curve]))
+
+    def below_drawing(self) -> MostLost | None:
+        """The same from what is drawn: what was lost, and what the teeth were made thinner by; None likewise."""
+        return replace(self, as_made=self.as_made if self.drawn is None else self.drawn, made_std=None).most_lost()
 
     @property
     def _made_std(self) -> Floats:
@@ -466,7 +471,7 @@ def _line_at(
         whole = values.copy()
         for width, rows in product(np.unique(on), stretches):
             teeth = np.flatnonzero(on == width)
-            values[teeth, :, rows] = _running_sum(whole[teeth, :, rows], int(width))
+            values[teeth, :, rows] = running_sum(whole[teeth, :, rows], int(width))
     n, sx, sy, sxx, sxy, syy = sums
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_x, mean_y = sx / n, sy / n
@@ -519,30 +524,3 @@ def _on_each(count: Floats, pooled: int, stretches: Sequence[slice]) -> Ints:
     wanted = np.ceil(FEWEST_POINTS / np.where(thin, per_section, 1.0))
     most = max(third, 1)
     return np.where(thin, np.clip(wanted, pooled, max(most, pooled)), pooled).astype(np.int64) | 1
-
-
-def _about_places(place: Ints, widths: Ints, drawn: Floats, made: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Means over the pooled sections of `drawn` and `made`, (teeth, n_z), the least of their sum from half way to the place before to half way to
-    the next, or to the end of the face, and `drawn` where that is, (teeth, places) each; nan where there is no place."""
-    result = np.full((4, *place.shape), np.nan)
-    n, both = drawn.shape[1], drawn + made
-    for tooth, width in enumerate(widths.tolist()):
-        columns = np.flatnonzero(place[tooth] >= 0)
-        at = place[tooth, columns]
-        number = _running_sum(np.ones(n), width)[at]
-        result[:2, tooth, columns] = [_running_sum(values[tooth], width)[at] / number for values in (drawn, made)]
-        edges = np.concatenate([[0], (at[1:] + at[:-1] + 1) // 2, [n]])
-        for column, low, high in zip(columns, edges[:-1], edges[1:], strict=True):
-            # Where two places are the same distance away, the section belongs to both.
-            near = slice(max(low - 1, 0), high)
-            at_least = int(np.argmin(np.nan_to_num(both[tooth, near], nan=np.inf)))
-            result[2:, tooth, column] = both[tooth, near][at_least], drawn[tooth, near][at_least]
-    return result[0], result[1], result[2], result[3]
-
-
-def _running_sum(values: Floats, width: int) -> Floats:
-    """Sum over a centred window along the last axis, cut off at the ends."""
-    total = np.concatenate([np.zeros((*values.shape[:-1], 1)), np.cumsum(values, axis=-1)], axis=-1)
-    at = np.arange(values.shape[-1])
-    low, high = np.maximum(at - width // 2, 0), np.minimum(at + width // 2 + 1, values.shape[-1])
-    return np.asarray(total[..., high] - total[..., low], dtype=np.float64)

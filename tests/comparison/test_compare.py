@@ -219,6 +219,15 @@ class TestExample:
             report["meshing"]["worn"]["backlash"]["normal_mm"], rel=1e-9
         )
         assert study["contact"]["contact_ratio"] == pytest.approx(report["meshing"]["worn"]["contact_ratio"], rel=1e-9)
+        # Of its thickness it has lost what the report says, without the bias of having looked for the thinnest of many sections.
+        ours, theirs = study["take_up"], report["meshing"]["take_up"]
+        numbers = [key for key, value in theirs.items() if isinstance(value, float)]
+        assert len(numbers) > 8
+        assert {key: ours[key] for key in numbers} == pytest.approx({key: theirs[key] for key in numbers}, rel=1e-9, abs=1e-9)
+        told = {key: report["most_lost"][key] for key in ("tooth", "at_z_mm")} | {
+            "thickness_loss_mm": report["most_lost"]["value_mm"]
+        }
+        assert {key: study["worn"][key] for key in told} == pytest.approx(told, rel=1e-9)
 
     def test_the_wear_law_is_the_one_put_in(self, example):
         law = example[2]["meshing"]["wear_law"]

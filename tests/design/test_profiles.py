@@ -1,13 +1,16 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gearwear.api import example
-from gearwear.design.files.profiles import read_profiles
+from gearwear.design.files.profiles import read_profiles, write_profiles
 from gearwear.design.files.toml import read_design
-from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.profiles import SectionLoss, ToothProfiles, nominal_profiles
 from gearwear.design.side import Side
 from gearwear.design.surface import flank_points
 from gearwear.errors import InputError
+from gearwear.meshing.study import study_meshing
 
 
 @pytest.fixture(scope="module")
@@ -53,3 +56,24 @@ def test_a_gear_that_was_compared_by_itself_is_known_among_a_pair(tmp_path, pini
     np.savez(tmp_path / "worn_profiles.npz", radius=radius, z=[0.0, 15.0], half_angle=half[:-1], part=np.array("gear"))
     with pytest.raises(InputError, match="is of a gear with 11 teeth"):
         read_profiles(tmp_path, design)
+
+
+def test_a_thickness_that_was_measured_goes_with_the_profiles(tmp_path, pinion):
+    """And a file of an older version, which has none, is read as before."""
+    design, file = read_design(example()), tmp_path / "worn_profiles.npz"
+    new = nominal_profiles(pinion)
+    for lost in (SectionLoss(0.3, 4, 2.5), SectionLoss(-0.01, 0, 15.0), None):
+        write_profiles(file, replace(new, lost=lost), "pinion")
+        assert read_profiles(file, design)[1].lost == lost
+        worn = study_meshing(design, wear=file).worn
+        assert (worn.loss, worn.tooth, worn.z) == ((0.3, 4, 2.5) if lost is not None and lost.value > 0.0 else (0.0, None, None))
+
+
+@pytest.mark.parametrize(
+    "lost", [[0.3, 4.0], [np.nan, 4.0, 2.5], [0.3, 4.5, 2.5], [0.3, 12.0, 2.5], [0.3, 4.0, np.inf], [90.0, 4.0, 2.5]]
+)
+def test_a_thickness_that_is_none_is_refused(tmp_path, pinion, lost):
+    new, file = nominal_profiles(pinion), tmp_path / "worn_profiles.npz"
+    np.savez(file, radius=new.radius, z=new.z, half_angle=new.half_angle, part=np.array("pinion"), lost=np.array(lost))
+    with pytest.raises(InputError, match="lost must be"):
+        read_profiles(file, read_design(example()))

@@ -329,6 +329,9 @@ def test_the_greatest_loss_is_that_of_the_worn_tooth():
     found = of_arcs(arc, made, 0.002)
     most = found.most_lost()
     assert most.tooth == 7 and most.value == pytest.approx(0.05, abs=0.004) and 2.0 < most.at_z < 4.0
+    # Drawn 30 µm thicker than they were made, it is below the drawing by that more, and known as well as what is left of it.
+    below = replace(found, drawn=made + 0.03, made_std=np.full(21, 0.02)).below_drawing()
+    assert (below.tooth, below.value, below.std) == (7, pytest.approx(most.value + 0.03, abs=1e-9), pytest.approx(most.std))
 
 
 def test_the_nominal_is_as_drawn():

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.profiles import ToothProfiles
+from gearwear.design.profiles import SectionLoss, ToothProfiles
 from gearwear.design.quantity import apart, as_given, at_most
 from gearwear.design.spec import MOST_TEETH
 from gearwear.errors import InputError
@@ -20,6 +21,8 @@ from gearwear.memory import check_memory
 NAME = "worn_profiles.npz"
 PARTS = ("pinion", "gear")
 KEYS = ("radius", "z", "half_angle", "part")
+LOST = "lost"
+"""Of files since 0.30.0, where a thickness was measured: `SectionLoss` as three numbers."""
 WIDEST = 256
 """Bytes of one entry of an array: a number has 8, the word for the part 24."""
 PER_ANGLE = 200
@@ -36,13 +39,22 @@ def write_profiles(path: Path, profiles: ToothProfiles, part: str) -> None:
     Parameters
     ----------
     path : Path
-        Arrays `radius` (n_r,) mm, `z` (n_z,) mm, `half_angle` (teeth, 2, n_z, n_r) rad with side 0 left and 1 right, and `part`.
+        Arrays `radius` (n_r,) mm, `z` (n_z,) mm, `half_angle` (teeth, 2, n_z, n_r) rad with side 0 left and 1 right, and `part`; where it is known
+        `lost` (3,): how much thinner than drawn a tooth is at most, mm of arc, which one (from 0), and at which height, mm.
     profiles : ToothProfiles
         The gear as it is: manufacture and wear.
     part : str
         "pinion" or "gear".
     """
-    np.savez_compressed(path, radius=profiles.radius, z=profiles.z, half_angle=profiles.half_angle, part=np.array(part))
+    arrays: dict[str, Any] = {
+        "radius": profiles.radius,
+        "z": profiles.z,
+        "half_angle": profiles.half_angle,
+        "part": np.array(part),
+    }
+    if profiles.lost is not None:
+        arrays[LOST] = np.array([profiles.lost.value, profiles.lost.tooth, profiles.lost.z], dtype=np.float64)
+    np.savez_compressed(path, **arrays)
 
 
 def read_profiles(path: Path, design: Design) -> tuple[str, ToothProfiles]:
@@ -74,10 +86,14 @@ def read_profiles(path: Path, design: Design) -> tuple[str, ToothProfiles]:
             missing = [key for key in KEYS if f"{key}.npy" not in archive.namelist()]
             if missing:
                 raise InputError(f"{file}: has no {', '.join(missing)}; the {NAME} that gearwear compare writes would be right")
+            known = f"{LOST}.npy" in archive.namelist()
+            if known and _shape(archive, LOST) != (3,):
+                raise InputError(f"{file}: {LOST} must be three numbers: mm, tooth, mm")
             _check_shapes(file, {key: _shape(archive, key) for key in KEYS}, max(gear.teeth for gear in design.gears.values()))
         with np.load(file, allow_pickle=False) as data:
             part = str(data["part"])
             radius, z, half_angle = (np.asarray(data[key], dtype=np.float64) for key in KEYS[:3])
+            lost = np.asarray(data[LOST], dtype=np.float64) if known else None
     except FileNotFoundError:
         raise InputError(f"{file}: no such file; the folder that gearwear compare wrote to would be right") from None
     except InputError:
@@ -93,7 +109,18 @@ def read_profiles(path: Path, design: Design) -> tuple[str, ToothProfiles]:
         raise InputError(f"{file}: is of a {part!r}, which the design does not have")
     gear = design.gears[part]
     _check(file, gear, radius, z, half_angle)
-    return part, ToothProfiles(gear, radius, z, half_angle)
+    return part, ToothProfiles(gear, radius, z, half_angle, lost=None if lost is None else _lost(file, gear, lost))
+
+
+def _lost(file: Path, gear: Gear, lost: Floats) -> SectionLoss:
+    value, tooth, z = (float(one) for one in lost)
+    if not (
+        abs(value) < gear.reference_radius * gear.pitch_angle and tooth in range(gear.teeth) and abs(z) <= 2.0 * gear.face_width
+    ):
+        raise InputError(
+            f"{file}: {LOST} must be mm of arc below a pitch, a tooth from 0 to {gear.teeth - 1} and a height on the face in mm"
+        )
+    return SectionLoss(value, int(tooth), z)
 
 
 def _shape(archive: zipfile.ZipFile, key: str) -> tuple[int, ...]:
