@@ -10,14 +10,15 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_sides
+from gearwear.diagnose.effects.base import Context, Kind, Shape, on_sides
+from gearwear.diagnose.effects.worn_depth import WornDepth
 from gearwear.diagnose.parameter import Parameter
 
 ABRASIVE_WEAR = "abrasive_wear"
 
 
 @dataclass(frozen=True)
-class AbrasiveWear(CatalogueEffect):
+class AbrasiveWear(WornDepth):
     """δ = −d on all flanks of one side, d ≥ 0; the side is the shape value (+1 left, −1 right; 0 both, each by an
     amount of its own).
 
@@ -37,12 +38,6 @@ class AbrasiveWear(CatalogueEffect):
     phrase: ClassVar[str] = "even wear of {depth_um}"
     lower: ClassVar[float] = 0.0
     upper: ClassVar[float] = math.inf
-
-    def shapes(self, context: Context) -> list[Shape]:
-        return [(1.0,), (-1.0,), (0.0,)]
-
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return bool(np.all((amplitudes >= 0.0) & (amplitudes < context.gear.tooth_thickness)))
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return on_sides(points, np.full(len(points), -1.0), shape[0])

@@ -9,15 +9,16 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
-from gearwear.diagnose.parameter import Parameter, ParameterEstimate
+from gearwear.diagnose.effects.base import Context, Kind, Shape
+from gearwear.diagnose.effects.free_levels import FreeLevels
+from gearwear.diagnose.parameter import Parameter
 
 FACE_LEVEL = "face_level"
 """The effect that leaves these levels free."""
 
 
 @dataclass(frozen=True)
-class FaceLevel(CatalogueEffect):
+class FaceLevel(FreeLevels):
     """δ = a level of its own on all flanks of each side of which some stretch wore and the rest did not, + higher; and where it did not wear at both ends,
     a lead and a crowning of its own.
 
@@ -49,11 +50,6 @@ class FaceLevel(CatalogueEffect):
                 up = 2.0 * points.position[:, 2] / context.gear.face_width - 1.0
                 columns += [own * up, own * up**2]
         return np.column_stack(columns)
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
-        std = np.sqrt(np.maximum(np.diag(covariance)[: len(amplitudes)], 0.0))
-        (level,) = self.parameters
-        return {level.name: level.estimates(amplitudes, std)}
 
 
 EFFECT = FaceLevel()

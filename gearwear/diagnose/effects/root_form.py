@@ -9,8 +9,9 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, FLANK, ROOT, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, from_form_on
-from gearwear.diagnose.parameter import Parameter, ParameterEstimate
+from gearwear.diagnose.effects.base import Context, Kind, Shape, from_form_on
+from gearwear.diagnose.effects.free_levels import FreeLevels
+from gearwear.diagnose.parameter import Parameter
 
 ROOT_FORM = "root_form"
 """The effect that leaves the root free."""
@@ -21,7 +22,7 @@ KNOTS = 3
 
 
 @dataclass(frozen=True)
-class RootForm(CatalogueEffect):
+class RootForm(FreeLevels):
     """δ = a level of its own in the middle of every column of the fillets that was seen, straight between them, both sides alike, and on bottom lands:
     + is metal left standing; on the lower end of the flanks a deviation of any shape that ends where the involute surely begins.
 
@@ -53,11 +54,6 @@ class RootForm(CatalogueEffect):
         if FLANK in context.surfaces:
             parts.append(_lower_end(points, context))
         return np.hstack(parts)
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
-        std = np.sqrt(np.maximum(np.diag(covariance)[: len(amplitudes)], 0.0))
-        (level,) = self.parameters
-        return {level.name: level.estimates(amplitudes, std)}
 
 
 def _fillet(points: SurfacePoints, context: Context) -> Floats:

@@ -9,7 +9,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, from_form_on, on_sides
+from gearwear.diagnose.effects.base import Context, Kind, Shape, from_form_on, on_sides
+from gearwear.diagnose.effects.worn_depth import WornDepth
 from gearwear.diagnose.parameter import Parameter
 
 SLIDING_WEAR = "sliding_wear"
@@ -17,7 +18,7 @@ SLIDING_WEAR = "sliding_wear"
 
 
 @dataclass(frozen=True)
-class SlidingWear(CatalogueEffect):
+class SlidingWear(WornDepth):
     """δ = −d |K(L)| / |K(L_form)| on all flanks of one side, d ≥ 0; the side is the shape value (+1 left, −1 right; 0 both, each by an
     amount of its own).
 
@@ -37,12 +38,6 @@ class SlidingWear(CatalogueEffect):
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("depth_um", signed=False),)
     phrase: ClassVar[str] = "wear that grows with sliding, {depth_um} at the form circle"
     lower: ClassVar[float] = 0.0
-
-    def shapes(self, context: Context) -> list[Shape]:
-        return [(1.0,), (-1.0,), (0.0,)]
-
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return bool(np.all((amplitudes >= 0.0) & (amplitudes < context.gear.tooth_thickness)))
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         form = context.gear.form_roll
