@@ -230,13 +230,20 @@ class SideSurface:
         inside : (rows, columns) bool
             Cells in which the middle of the window may lie; nan where none of them does.
         """
-        number, drawn = _numbers(inside.shape), self._drawn(inside.shape)
         ways = [_over_windows(count, wide) for count, wide in zip(inside.shape, window, strict=True)]
         (rows, along), (columns, across) = ways
         there: Bools = np.asarray(np.any([inside[np.ix_(row, column)] for row, column in product(rows, columns)], axis=0))
         if not there.any():  # narrower than half a window, at an edge: no window has its middle there
             return np.nan, np.nan
-        by_rows = (sparse.csr_array(along) @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
+        drawn = _on_sheet(self._drawn(inside.shape), inside.shape)
+        # A window of coefficients that all lie above the mean of the one that is expected to be the deepest is the least of no draw.
+        expected = along @ _on_sheet(self.expected, inside.shape) @ across.T
+        row, column = np.unravel_index(int(np.where(there, expected, np.inf).argmin()), there.shape)
+        known, lowest = across[column] @ np.tensordot(along[row], drawn, 1), drawn.min(axis=0)
+        kept = [bool((lowest[window > 0.0].min(axis=0) <= known).any()) for window in across]
+        used = across[kept].any(axis=0)
+        across, there, drawn = across[kept][:, used], there[:, kept], drawn[:, used]
+        by_rows = (sparse.csr_array(along) @ drawn.reshape(len(drawn), -1)).reshape(len(along), -1, DRAWS)
         least = np.full(DRAWS, np.inf)
         # Row by row: all windows of all draws are larger than the rest of a comparison's work.
         for over, middles in zip(by_rows, there, strict=True):
@@ -248,8 +255,8 @@ class SideSurface:
     def along(self, columns: Floats) -> Floats:
         """Coefficients of drawn surfaces on lines along the face, (k, `DRAWS`, n) mm, at places (k,) counted in columns: on the lines the surfaces have
         ``at_places(rows, places)`` times as much."""
-        number, drawn = _numbers(self.seen.shape), self._drawn(self.seen.shape)
-        of_rows = np.tensordot(at_places(self.seen.shape[1], columns), drawn[number], axes=(1, 1))
+        drawn = _on_sheet(self._drawn(self.seen.shape), self.seen.shape)
+        of_rows = np.tensordot(at_places(self.seen.shape[1], columns), drawn, axes=(1, 1))
         return np.ascontiguousarray(np.moveaxis(of_rows, 1, 2)) + self.level
 
     def _drawn(self, shape: tuple[int, ...]) -> Floats:
@@ -258,14 +265,15 @@ class SideSurface:
         turned, random = _from_other_end(shape), _random(self.at.shape[1])
         information, usual = _information(self.at, self.weight, len(self.ways[0].factor), turned), float(np.median(self.weight))
         ends = np.rint(np.cumsum([way.share for way in self.ways]) * random.shape[1]).astype(np.int64)
-        drawn = list[Floats]()
+        drawn, start = np.empty((len(random), DRAWS)), 0
         for way, half in zip(self.ways, np.split(random, ends[:-1], axis=1), strict=True):
             if not half.size:
                 continue
             from_above = _cholesky(_precision(information, shape, usual, way.stiffness))
-            both = np.hstack([_from_below(way.factor, half), _from_below(from_above, half)[turned]])
-            drawn.append(both + way.expected[:, None])
-        return np.hstack(drawn)
+            for off in (_from_below(way.factor, half), _from_below(from_above, half)[turned]):
+                np.add(off, way.expected[:, None], out=drawn[:, start : start + half.shape[1]])
+                start += half.shape[1]
+        return drawn
 
 
 def _mean(ways: Sequence[_AsStiff], values: Sequence[Floats]) -> Floats:
@@ -328,6 +336,12 @@ def _numbers(shape: tuple[int, ...]) -> Ints:
     count = _coefficients(shape)
     number = np.arange(count[0] * count[1])
     return number.reshape(count) if count[1] <= count[0] else number.reshape(count[::-1]).T
+
+
+def _on_sheet(values: Floats, shape: tuple[int, ...]) -> Floats:
+    """Values (n, …) of the coefficients by rows and columns, (rows, columns, …), where they lie: nothing is copied."""
+    count, each = _coefficients(shape), values.shape[1:]
+    return values.reshape(*count, *each) if count[1] <= count[0] else values.reshape(*count[::-1], *each).swapaxes(0, 1)
 
 
 def _spline(off: Floats, square: Floats) -> tuple[Floats, Floats, Floats]:
@@ -422,18 +436,18 @@ def _from_below(triangle: Floats, right: Floats) -> Floats:
     """x (n, k) with Lᵀ x = `right`, L given as lower bands: block by block as wide as the bands, which takes half the time of LAPACK's column by
     column."""
     n, wide = triangle.shape[1], max(triangle.shape[0] - 1, 1)
-    flat, x = triangle.ravel(order="F"), right.copy()
-
-    def block(rows: slice, columns: slice) -> Floats:
-        """Of L, where it lies: an element below or right of the bands is another's."""
-        size, step = (rows.stop - rows.start, columns.stop - columns.start), flat.itemsize
-        return as_strided(flat[rows.start + columns.start * wide :], size, (step, step * wide))
-
-    for start in range((n - 1) // wide * wide, -1, -wide):
-        own, beyond = slice(start, min(start + wide, n)), slice(start + wide, min(start + 2 * wide, n))
-        if beyond.start < n:
-            x[own] -= np.triu(block(beyond, own)).T @ x[beyond]
-        dtrsm(1.0, block(own, own), x[own].T, side=1, lower=1, overwrite_b=1)
+    count, x = -(-n // wide), right.copy()
+    held = np.zeros((count * wide, wide + 1))
+    held[:n] = triangle.T
+    # The blocks where they lie: an element below or right of the bands is another's.
+    steps = (held.itemsize * wide * (wide + 1), held.itemsize, held.itemsize * wide)
+    own, below = (as_strided(held.ravel()[first:], (count, wide, wide), steps) for first in (0, wide))
+    below = np.multiply(below, np.tri(wide).T, order="C")
+    for i in range(count - 1, -1, -1):
+        rows, beyond = x[i * wide : (i + 1) * wide], x[(i + 1) * wide : (i + 2) * wide]
+        if len(beyond):
+            rows -= below[i, : len(beyond)].T @ beyond
+        dtrsm(1.0, own[i, : len(rows), : len(rows)], rows.T, side=1, lower=1, overwrite_b=1)
     return x
 
 

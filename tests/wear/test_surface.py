@@ -229,6 +229,20 @@ def test_the_deepest_mean_of_a_hollow_lies_within_its_deviation(density, depth):
     assert abs(np.mean(pulls)) < 1.0
 
 
+@pytest.mark.parametrize("shape", [(13, 8), (8, 13)])
+@pytest.mark.parametrize("lean", [0.0, 0.05])
+def test_the_deepest_mean_is_the_least_of_all_windows_of_all_draws(shape, lean):
+    """By every window of every draw written out: alike along the profile, where any may be the least, and so steep that few columns can."""
+    random, edge = np.random.default_rng(10), np.indices(shape)[0] > 2
+    cells = cells_of(random, shape, 4.0, lambda z, x: lean * x)
+    surface = found(*cells, np.ones(shape, dtype=bool))
+    (rows, along), (columns, across) = (_over_windows(count, wide) for count, wide in zip(shape, (1.5, 2.0), strict=True))
+    means = np.kron(along, across) @ surface._drawn(shape)[_numbers(shape).ravel()]
+    there = np.any([edge[np.ix_(row, column)] for row, column in product(rows, columns)], axis=0).ravel()
+    least = means[there].min(axis=0) + surface.level
+    assert surface.deepest((1.5, 2.0), edge) == pytest.approx((least.mean(), least.std()), rel=1e-9)
+
+
 def test_where_nothing_is_worn_the_deepest_place_is_not_what_chance_makes_of_it():
     """The least of so many cells lies two of their deviations low, that of the surface much less."""
     random, inside = np.random.default_rng(7), np.ones(SHAPE, dtype=bool)
