@@ -72,5 +72,6 @@ def _halves(at: Floats, part: Ints) -> list[Ints]:
     """Of a part that is large enough; else the part."""
     if len(part) < 2 * PATCH_POINTS:
         return [part]
-    order = part[np.argsort(at[part, int(np.argmax(np.ptp(at[part], axis=0)))], kind="stable")]
-    return [order[: len(part) // 2], order[len(part) // 2 :]]
+    along, half = at[part, int(np.argmax(np.ptp(at[part], axis=0)))], len(part) // 2
+    order = part[np.argpartition(along, half) if half >= 2 * PATCH_POINTS else np.argsort(along, kind="stable")]
+    return [order[:half], order[half:]]
