@@ -46,10 +46,11 @@ def with_seam(measured: MeasuredGear, thickness: SectionThickness) -> SectionThi
     by = float(change[tooth, section])
     if abs(by) < 0.5 * abs(closure) * thickness.radius:  # all of it, or next to nothing where it goes through a gap
         return thickness
-    other = replace(
-        thickness, arc=thickness.arc + change, unmeasured=_moved(thickness.unmeasured, change.mean(axis=1))
-    ).thinnest()
-    assert other is not None
+    moved = _moved(thickness.unmeasured, change.mean(axis=1))
+    told, other = thickness.thinnest(), replace(thickness, arc=thickness.arc + change, unmeasured=moved).thinnest()
+    assert told is not None and other is not None
+    if tooth not in (told.tooth, other.tooth):
+        return thickness  # the thinnest is another one, drift or not
     reach = NORMAL_95 * relative_std * abs(by) if other.tooth == tooth else 0.0
     return replace(thickness, seam=DriftSeam(tooth, by, other.low - reach, other.high + reach))
 

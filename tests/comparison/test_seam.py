@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 import gearwear as gw
+from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.comparison.seam import with_seam
 from gearwear.comparison.thick import corrected_thickness
+from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
+from gearwear.wear.thickness import SectionThickness
 from tests.diagnose.plain import plain_effects
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Recipe, make_scan
@@ -22,25 +26,32 @@ INDEX = 0.006
 """mm, standard deviation of the pitch errors."""
 
 
-def told(start: float, closure: float = CLOSURE_DEG):
-    """Thickness of a new gear whose pitch varies a little, scanned with a drift that begins so many pitches on; before and after it is asked for the seam."""
+@cache
+def found_with(start: float, closure: float = CLOSURE_DEG) -> MeasuredGear:
+    """A new gear whose pitch varies a little, scanned with a drift that begins so many pitches on, and taken for pitch errors all."""
     gear = designed()
     index = np.random.default_rng(1).normal(0.0, 1e3 * INDEX, gear.teeth)
     drift = Effect("scan_drift", {"closure_deg": closure, "start_deg": start * 360.0 / gear.teeth})
     effects = (Effect("pitch", {"index_um": tuple(index - index.mean())}), drift)
     scan = make_scan(Recipe(jitter=1.0, noise_um=5.0, pose="none", effects=effects).of_size(20_000), 3)
-    found = gw.find_effects(gw.register(Design({"gear": gear}), gw.as_scan(scan.points)))
+    with plain_effects("scan_drift"):
+        found = gw.find_effects(gw.register(Design({"gear": gear}), gw.as_scan(scan.points)))
     assert "scan_drift" in next(one for one in found.loop.effects if one.name == "pitch").alternatives
+    return found
+
+
+def told(start: float, closure: float = CLOSURE_DEG) -> tuple[Gear, SectionThickness, SectionThickness]:
+    """Gear and thickness, before and after it is asked for the seam."""
+    found = found_with(start, closure)
     thickness = corrected_thickness(found, found.sections)
-    return gear, thickness, with_seam(found, thickness)
+    return found.gear, thickness, with_seam(found, thickness)
 
 
 @pytest.mark.parametrize(
     "closure", [CLOSURE_DEG, pytest.param(-CLOSURE_DEG, marks=pytest.mark.long)], ids=["told thin", "told thick"]
 )
 def test_the_interval_holds_the_tooth_that_the_seam_goes_through(closure):
-    with plain_effects("scan_drift"):
-        gear, told_so, either = told(TOOTH, closure)
+    gear, told_so, either = told(TOOTH, closure)
     # Errors of pitch leave every tooth as thick as it is drawn; the flanks of this one are apart by the closure.
     by = math.radians(closure) * gear.reference_radius
     assert either.seam is not None and either.seam.tooth == TOOTH
@@ -60,7 +71,17 @@ def test_the_interval_holds_the_tooth_that_the_seam_goes_through(closure):
 
 
 def test_a_seam_in_a_gap_makes_no_tooth_thinner():
-    with plain_effects("scan_drift"):
-        gear, told_so, either = told(TOOTH + 0.5)
+    gear, told_so, either = told(TOOTH + 0.5)
     assert either is told_so
+    # Nor where another one is the thinnest; of the two beside the gap a thin one may have the seam in it.
+    for tooth in {*range(gear.teeth)} - {TOOTH, TOOTH + 1}:
+        worn = replace(told_so, arc=told_so.arc - 0.1 * (np.arange(gear.teeth) == tooth)[:, None])
+        assert with_seam(found_with(TOOTH + 0.5), worn) is worn
     assert told_so.thinnest().low < gear.tooth_thickness < told_so.thinnest().high
+
+
+def test_a_seam_in_a_tooth_that_is_not_the_thinnest_changes_nothing():
+    """Of another tooth 0.1 mm is gone: it is the thinnest, drift or not."""
+    gear, told_so, _ = told(TOOTH)
+    worn = replace(told_so, arc=told_so.arc - 0.1 * (np.arange(gear.teeth) == TOOTH + 4)[:, None])
+    assert with_seam(found_with(TOOTH), worn) is worn
