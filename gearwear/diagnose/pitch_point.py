@@ -14,6 +14,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.side import Side
+from gearwear.diagnose.columns import CellColumns
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.flank_columns import law_shapes
 from gearwear.diagnose.gram import Gram
@@ -68,9 +69,17 @@ def likeliest(
     rolls = np.concatenate([[context.gear.reference_roll], pitch_points(context)])
     shapes = [_about(one, roll, context) for one in rolls]
     count = shapes[0].shape[1]
-    lost = [np.where((side == int(one))[:, None], -shape, 0.0) for shape in shapes for one in Side]
-    gram = Gram.whole(np.hstack([made, *lost]), target, weight)
-    at = made.shape[1] + count * np.arange(len(lost)).reshape(-1, len(Side), 1) + np.arange(count)
+    # Side by side: what one has lost is nothing on the cells of the other, and off the flanks.
+    parts = [np.flatnonzero(side == which) for which in (*map(int, Side), 0)]
+    columns = CellColumns.of_pieces(
+        np.hstack(
+            [made[rows], *(np.where((side[rows] == int(one))[:, None], -shape[rows], 0.0) for shape in shapes for one in Side)]
+        )
+        for rows in parts
+    )
+    order = np.concatenate(parts)
+    gram = Gram.by_weight(columns, target[order])(weight[order])
+    at = made.shape[1] + count * np.arange(len(shapes) * len(Side)).reshape(-1, len(Side), 1) + np.arange(count)
     known = np.arange(made.shape[1])
     answers = [(0,), (1,), (0, 1)]  # the sides that have lost it
     square = np.array([[_left(gram, known, at[i, list(sides)].ravel()) for sides in answers] for i in range(len(rolls))])
