@@ -12,7 +12,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.quantity import NORMAL_95, counted, pretty_unit
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.as_views import may_be_views
 from gearwear.diagnose.bowed import bow_of_sound
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
@@ -26,6 +26,7 @@ from gearwear.diagnose.effects.view_registration import VIEW_REGISTRATION
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
 from gearwear.diagnose.jumps import jump_deviations
+from gearwear.diagnose.made_height import MadeHeight, fillets_off, made_height
 from gearwear.diagnose.parameter import ParameterEstimate, Role
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
@@ -163,9 +164,8 @@ class Loop(Card):
         What no effect explains; taken out of `residual_after` without a name.
     hidden : (m, k) float or None
         What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
-    made : (m, sides) float or None
-        How high each side that does not show it at both ends of its face may stand as it was made, mm: all over it, and unlike `hidden` no doubt that it is worn. None where
-        a scan of the gear unworn shows it.
+    made : MadeHeight or None
+        How high sides may stand as they were made that do not show it. None where a scan of the gear unworn shows it.
     others : tuple of Loop
         The same scan explained with other sides worn throughout, as far as it does not exclude them.
     correlations : tuple of Correlation
@@ -200,7 +200,7 @@ class Loop(Card):
     patterns: tuple[Pattern, ...]
     level_std: tuple[float, float] = (0.0, 0.0)
     hidden: Floats | None = None
-    made: Floats | None = None
+    made: MadeHeight | None = None
     others: tuple[Loop, ...] = ()
     correlations: tuple[Correlation, ...] = ()
     worn_flanks: Bools | None = None
@@ -217,11 +217,9 @@ class Loop(Card):
     @property
     def as_made_std(self) -> tuple[float, float]:
         """Standard deviation of how high the flanks of left and right stood as they were made, mm: of `level_std` and `made`."""
-        known = list(self.level_std)
-        if self.made is not None:
-            for side, column in zip(sorted(self.context.open_sides), self.made.T, strict=False):
-                known[side.index] = math.hypot(known[side.index], float(column.max(initial=0.0)))
-        return known[0], known[1]
+        made = MadeHeight() if self.made is None else self.made
+        left, right = (math.hypot(self.level_std[side.index], made.of(side)) for side in Side)
+        return left, right
 
     @property
     def scale(self) -> float:
@@ -379,8 +377,11 @@ def account(
         if one.kind is Kind.MANUFACTURE
         and not (told and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
     ]
-    bowed = bow_of_sound(fit, model, problem.context.worn) if problem.context.open_sides else 0.0
-    made = _made_on(problem.context.open_sides, fit, [form_of_all(patterns, len(fit.target)), *off], 2.0 * bowed)
+    made = MadeHeight()
+    if worn := problem.context.open_sides:
+        stand_off = fillets_off(fit, model, problem.context.worn) if told else 0.0
+        besides = math.hypot(2.0 * bow_of_sound(fit, model, problem.context.worn), stand_off)
+        made = made_height(worn, fit, [form_of_all(patterns, len(fit.target)), *off], besides)
     hidden = fit.hidden(model, noise)
     start, end = steps[len(levels)], steps[-1]
     return Loop(
@@ -456,18 +457,6 @@ def form_of_all(patterns: tuple[Pattern, ...], cells: int) -> Floats:
     """What patterns have in common on all teeth, (cells,) mm."""
     forms = [pattern.field for pattern in patterns if pattern.of_all_teeth]
     return np.asarray(np.sum([np.zeros(cells), *forms], axis=0), dtype=np.float64)
-
-
-def _made_on(worn: frozenset[Side], fit: Fit, off: list[Floats], bowed: float = 0.0) -> Floats:
-    """(m, sides) how high sides worn throughout may stand as they were made, where it cannot be seen, mm: all over a side as much as what the maker
-    left of each kind, `off` (m,), varies over the flanks that are seen (RMS): who is off by that in form and pitch is no better in thickness. And as
-    sound flanks are `bowed` besides, mm: as the pose has these on the line, what they lie low is on the worn ones, and these may be bowed alike."""
-    points = fit.cells.points
-    flank = (points.surface == FLANK) & fit.cells.seen
-    seen = fit.use & flank if (fit.use & flank).any() else fit.use
-    size = math.hypot(bowed, *(float(np.std(field[seen])) for field in off)) if seen.any() else 0.0
-    sides = [np.where(flank & (points.side == int(side)), size, 0.0) for side in sorted(worn) if size > 0.0]
-    return np.column_stack([np.zeros((len(fit.target), 0)), *sides])
 
 
 def _by_gain(problem: Problem, model: Model) -> list[int]:

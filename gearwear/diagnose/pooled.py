@@ -121,7 +121,6 @@ def carried(loop: Loop, pooled: Cells, cells: Cells, noise: float) -> Loop:
             for pattern in loop.patterns
         ),
         hidden=None if loop.hidden is None else on_cells(loop.hidden),
-        made=None if loop.made is None else on_cells(loop.made),
         together=None if loop.together is None else on_cells(loop.together),
         others=tuple(carried(other, pooled, cells, noise) for other in loop.others),
         untold=None,

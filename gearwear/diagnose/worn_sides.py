@@ -94,9 +94,13 @@ def side_costs(
     profiles = (shared[:, :0], price[:0]), (shared, price), by_side
     plain, alike, apart = each([partial(scan.made, model, *profile) for profile in profiles])
     made = min(plain.cost, alike.cost)
-    unworn = min(made, apart.cost)
-    own = {side: apart.needed[apart.needed // shared.shape[1] == side.opposite.index] for side in Side if apart.cost < made}
-    beside = {side: (by_side[0][:, columns], _price(by_side[1][columns])) for side, columns in own.items() if len(columns)}
+    unworn = min(made, apart.cost + scan.forms_apart(apart.profile))
+    beside = dict[Side, tuple[Floats, float]]()
+    for side in Side if apart.cost < made else ():
+        others = apart.needed[apart.needed // shared.shape[1] == side.opposite.index]
+        if len(others):
+            of_others = np.where(fit.cells.points.side == int(side), 0.0, apart.profile)
+            beside[side] = by_side[0][:, others], _price(by_side[1][others]) + scan.forms_apart(of_others)
     tenable = scan.tenable(model, apart.cost < made, unworn, beside, ruled_out)
     other, pitch = scan.pitch_point(model), dict[frozenset[Side], float]()
     if other is not None:
@@ -136,10 +140,11 @@ class _Worn:
 
 @dataclass(frozen=True, slots=True)
 class _Made:
-    """The cost of flanks that were made so, and which of the columns of profiles that were free are needed, (k,)."""
+    """The cost of flanks that were made so, which of the columns of profiles that were free are needed, (k,), and the profile they make, (m,) mm."""
 
     cost: float
     needed: Ints
+    profile: Floats
 
 
 @dataclass(frozen=True)
@@ -288,8 +293,21 @@ class _Scan:
         needed = self._needed(model, seen, price, fitted.weight)
         model = self._searched(model, free[:, needed], fitted.weight)
         needed = self._needed(model, seen, price, fitted.weight)
-        fitted = self.robust(np.hstack([self.columns(model), seen[:, needed]]))
-        return _Made(fitted.square / self.problem.unit + self._named(model) + _price(price[needed]), needed)
+        own = self.columns(model)
+        fitted = self.robust(np.hstack([own, seen[:, needed]]))
+        profile = free[:, needed] @ fitted.amplitudes[own.shape[1] :]
+        return _Made(fitted.square / self.problem.unit + self._named(model) + _price(price[needed]), needed, profile)
+
+    def forms_apart(self, profile: Floats) -> float:
+        """By how much, in cost, forms (m,) of left and right that differ so are less common than forms alike: of each 95 % keep the tolerance of the gear's
+        class, and what they have in common is its design's."""
+        grid = self.fit.cells.grid
+        apart = self._by_column(profile, Side.LEFT) - self._by_column(profile, Side.RIGHT)
+        seen = np.isfinite(apart)
+        line = np.column_stack([np.ones(grid.flank), 0.5 * (grid.roll_edges[:-1] + grid.roll_edges[1:])])[seen]
+        form = np.ptp(apart[seen] - line @ np.linalg.lstsq(line, apart[seen])[0]) if seen.any() else 0.0
+        tolerance = profile_form_tolerance(grid.gear.normal_module, grid.gear.tolerance.flank_class)
+        return (NORMAL_95 * float(form) / tolerance) ** 2 / len(Side)  # the variance of a difference is that of both
 
     def _needed(self, model: Model, free: Floats, price: Floats, weight: Floats) -> Ints:
         """Which of some columns gain more beside a model than they cost, one after the other."""
@@ -381,13 +399,18 @@ class _Scan:
 
     def _as_slid(self, loss: Floats, side: Side) -> bool:
         """`as_slid` of a loss (m,) on the flanks of a side."""
+        grid, lost = self.fit.cells.grid, -self._by_column(loss, side)
+        seen, edges = np.isfinite(lost), grid.roll_edges
+        way = 0.5 * (edges[:-1] + edges[1:])[seen] - self.problem.context.pitch_roll
+        return as_slid(lost[seen], way, profile_form_tolerance(grid.gear.normal_module, rules().ground_class))
+
+    def _by_column(self, values: Floats, side: Side) -> Floats:
+        """(columns,) means of values (m,) on the flanks of a side; nan where no cell may be used."""
         grid, rows = self.fit.cells.grid, self._on_flanks(side)
         column = grid.flank_column(self.fit.cells.points.roll[rows])
         number = np.bincount(column, minlength=grid.flank)
-        seen, edges = number > 0, grid.roll_edges
-        lost = -np.bincount(column, loss[rows], grid.flank)[seen] / number[seen]
-        way = 0.5 * (edges[:-1] + edges[1:])[seen] - self.problem.context.pitch_roll
-        return as_slid(lost, way, profile_form_tolerance(grid.gear.normal_module, rules().ground_class))
+        means = np.bincount(column, values[rows], grid.flank) / np.maximum(number, 1)
+        return np.where(number > 0, means, np.nan)
 
     def losses(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[_Loss]:
         """The losses of some shapes on some sides, each beside the best model; none where what these have in common is none of them.

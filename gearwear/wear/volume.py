@@ -359,11 +359,11 @@ class _Errors:
         """Covariance, mm⁶, by how high sides worn throughout may stand as they were made (`Loop.made`), and their flanks apart."""
         if self.loop is None or self.loop.made is None:
             return np.zeros((len(weights), len(weights)))
-        teeth = self.cells.grid.gear.teeth
-        level, own = np.zeros((len(weights), self.loop.made.shape[1])), np.zeros((len(Side), len(weights), teeth))
-        for side, which, values in weights.by_side():
-            level[which] += np.tensordot(values, self.cells.grid.side(self.loop.made, *side), axes=2)
-            own[side[1], which, side[0]] += self.apart[side[1]] * values.sum(axis=(1, 2))
+        teeth, std = self.cells.grid.gear.teeth, [self.loop.made.of(side) for side in Side]
+        level, own = np.zeros((len(weights), len(Side))), np.zeros((len(Side), len(weights), teeth))
+        for (tooth, half), which, values in weights.by_side():
+            level[which, half] += std[half] * values[..., self.sheets.fillet :].sum(axis=(1, 2))
+            own[half, which, tooth] += self.apart[half] * values.sum(axis=(1, 2))
         own -= own.mean(axis=2, keepdims=True)  # about the mean of their side
         return np.asarray(level @ level.T + np.einsum("sik,sjk->ij", own, own), dtype=np.float64)
 

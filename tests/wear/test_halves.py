@@ -10,6 +10,7 @@ import pytest
 import gearwear as gw
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
+from gearwear.diagnose.made_height import MadeHeight
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import make_side_maps
 from gearwear.wear.own_level import at_own_level
@@ -55,7 +56,7 @@ def test_a_profile_seen_on_most_of_both_halves_is_seen():
     grid, flank = cells.grid, flanks_of(cells)
     flank[:, 0] += 0.030 + 0.0003 * np.random.default_rng(2).standard_normal(flank[:, 0].shape)
     pitch = SimpleNamespace(pitch_roll=grid.gear.reference_roll, sliding=lambda roll: 1.0 - grid.gear.reference_roll / roll)
-    as_made = SimpleNamespace(as_made_std=(0.0003, 0.0003), made=np.zeros((1, 1)), context=pitch)
+    as_made = SimpleNamespace(as_made_std=(0.0003, 0.0003), made=MadeHeight(), context=pitch)
     sides, rows = np.zeros(grid.sides(cells.count).shape, dtype=bool), np.flatnonzero(grid.toothed)
     unseen = rows[np.arange(len(rows)) % 5 < 2]
     assert 0.5 * len(rows) < len(rows) - len(unseen) < 0.5 * grid.rows

@@ -9,6 +9,7 @@ from scipy import stats
 from gearwear.design.side import Side
 from gearwear.design.surface import locate
 from gearwear.diagnose.active_face import ActiveFace
+from gearwear.diagnose.made_height import MadeHeight
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import make_side_maps
 from gearwear.wear.own_level import at_own_level, standing_proud
@@ -88,7 +89,7 @@ def sliding(thick, shared=0.0):
 
 
 def as_known_to(std, faces=()):
-    return SimpleNamespace(as_made_std=(std, std), made=np.zeros((1, 1)), context=SimpleNamespace(faces=faces))
+    return SimpleNamespace(as_made_std=(std, std), made=MadeHeight(), context=SimpleNamespace(faces=faces))
 
 
 @pytest.mark.parametrize("thick", [0.02, 0.04])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.side import Side
+from gearwear.diagnose.made_height import MadeHeight
 from gearwear.placing.side_maps import make_side_maps
 from gearwear.wear.own_level import highest_strip, standing_proud
 from gearwear.wear.places import lay_flat
@@ -28,7 +29,7 @@ WIDTH = 0.2 * GEAR.transverse_module
 
 def loop():
     context = SimpleNamespace(pitch_roll=PITCH, sliding=lambda roll: 1.0 - PITCH / roll, faces=())
-    return SimpleNamespace(as_made_std=(AS_KNOWN, AS_KNOWN), made=np.zeros((1, 1)), context=context)
+    return SimpleNamespace(as_made_std=(AS_KNOWN, AS_KNOWN), made=MadeHeight(), context=context)
 
 
 def put_on(thick=0.0, ridge=0.0, lost=0.06, power=1.0, size=0.9, seed=1):

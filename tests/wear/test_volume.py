@@ -11,6 +11,7 @@ from scipy import stats
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.loop import close_loop, make_context
+from gearwear.diagnose.made_height import MadeHeight
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.pooled import carried
 from gearwear.diagnose.space_waves import SpaceWave
@@ -159,9 +160,7 @@ def test_effects_too_small_to_be_named_are_in_the_interval():
         loop = close_loop(cells, scatter, context, worn=frozenset({Side.LEFT}))  # which side is worn is another test's question
         assert not loop.effects
         left = cells.with_deviation(cells.points.deviation - cells.motion @ loop.motion)
-        both = [
-            find_wear(left, scatter, loop.worn_sides, one) for one in (loop, replace(loop, hidden=None, made=loop.made[:, :0]))
-        ]
+        both = [find_wear(left, scatter, loop.worn_sides, one) for one in (loop, replace(loop, hidden=None, made=MadeHeight()))]
         pulls.append([(found.volume - scan.truth.volume_mm3) / found.volume_std for found in both])
     known, unknown = (float((np.array(one) ** 2).sum()) for one in zip(*pulls, strict=True))
     assert known < stats.chi2.ppf(0.9999, len(small)) < unknown

@@ -19,10 +19,8 @@ from gearwear.diagnose.effects.face_width import EFFECT as FACE_WIDTH
 from gearwear.diagnose.effects.thickness_variation import EFFECT as THICKNESS_VARIATION
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.flank_columns import loss_by_tooth, wear_columns
-from gearwear.diagnose.found import _made_on, form_of_all
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.masks import not_stray
-from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.pitch_point import as_slid
 from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
 from gearwear.diagnose.worn_sides import _Loss, _Scan
@@ -143,30 +141,6 @@ def test_thin_teeth_may_be_evenly_worn_and_thick_ones_not(thickness_um):
     depth = max(-0.5e-3 * thickness_um * np.cos(PINION.transverse_pressure_angle), 0.0)
     assert ("abrasive_wear" in thin.alternatives) == (thickness_um < 0.0)
     assert loop.thinner_by(flanks) == pytest.approx(depth, abs=0.001)
-
-
-def test_a_form_of_the_coast_side_that_nothing_explains_may_be_on_the_worn_side_too():
-    """Waves across the face of the right flanks, 12 / √2 µm RMS: the left ones may have been off as far, all over, before they were worn."""
-    cells = binned(())
-    points = cells.points
-    flank = cells.seen & (points.surface == FLANK)
-    left, right = (flank & (points.side == int(side)) for side in (Side.LEFT, Side.RIGHT))
-    height = np.nan_to_num(points.position[:, 2])
-    field = np.where(right, 0.012 * np.sin(4.0 * np.pi * height / PINION.face_width), 0.0)
-    waves = Pattern(0, "right only", 2.0, 0.0, 0.008, 0.012, 0.0, field)
-    once = replace(waves, order=1)  # goes round the gear: no form of all teeth
-    fit = SimpleNamespace(cells=cells, target=field, use=right)
-    form = form_of_all((waves, once), len(field))
-    (own,) = _made_on(LEFT, fit, [form]).T
-    assert own[left] == pytest.approx(0.012 / np.sqrt(2.0), rel=0.01)
-    assert not own[~left].any()
-    assert _made_on(NO_SIDE, fit, [form]).size == _made_on(LEFT, fit, [form_of_all((once,), len(field))]).size == 0
-    # Teeth off by turns and an offset of all: who cuts the former is no better in thickness; the latter is known.
-    turns = np.where(flank, 0.009 * (-1.0) ** points.tooth, 0.0)
-    (both,) = _made_on(LEFT, fit, [form, turns, np.full(len(field), 0.05)]).T
-    assert both[left] == pytest.approx(np.hypot(0.012 / np.sqrt(2.0), 0.009), rel=0.01)
-    (bowed,) = _made_on(LEFT, fit, [turns], 0.012).T
-    assert bowed[left] == pytest.approx(0.015, rel=0.01)
 
 
 @pytest.mark.long
@@ -342,3 +316,25 @@ def test_a_loss_that_follows_load_times_sliding_spares_nothing_beyond(lost, slid
     assert as_slid(lost, WAY, MADE) is slid
     assert as_slid(lost + 0.0005 * np.cos(1e3 * WAY), WAY, MADE) is slid
     assert as_slid(lost[::-1], WAY[::-1], MADE) is slid
+
+
+@pytest.mark.parametrize(("flank_class", "tolerance_um"), [(8, 24.02), (5, 8.49)])
+def test_forms_of_left_and_right_cost_what_their_difference_is_rare(flank_class, tolerance_um):
+    """Columns of cells high and low by turns about a straight line, c = 20 µm from peak to peak; f_fα = (0.55 m_n + 5) µm of class 5, √2 a class. Difference of two normal forms of which 95 % keep
+    the tolerance: (1.96 c / T)² / 2. The same on both sides, or a slope of one, costs nothing."""
+    cells = binned(())
+    gear = Gear.from_spec(replace(PINION.spec, tolerance=replace(PINION.spec.tolerance, flank_class=flank_class)))
+    cells = replace(cells, grid=replace(cells.grid, gear=gear))
+    points, edges = cells.points, cells.grid.roll_edges
+    flank = cells.seen & (points.surface == FLANK)
+    roll = np.where(flank, np.nan_to_num(points.roll), edges[0])
+    middles, turns = 0.5 * (edges[:-1] + edges[1:]), (-1.0) ** np.arange(cells.grid.flank)
+    off_line = turns - np.polyval(np.polyfit(middles, turns, 1), middles)
+    by_turns = np.where(flank, 0.02 * (off_line / np.ptp(off_line))[cells.grid.flank_column(roll)], 0.0)
+    left = flank & (points.side == int(Side.LEFT))
+    scan = _Scan(SimpleNamespace(cells=cells), None, flank)
+    rare = 0.5 * (1.96 * 20.0 / tolerance_um) ** 2
+    assert scan.forms_apart(np.where(left, by_turns, 0.0)) == pytest.approx(rare, rel=1e-3)
+    assert scan.forms_apart(np.where(left, 0.5, -0.5) * by_turns) == pytest.approx(rare, rel=1e-3)
+    assert scan.forms_apart(by_turns) == pytest.approx(0.0, abs=1e-9)
+    assert scan.forms_apart(np.where(left, 0.002 * roll, 0.0)) < 0.05 * rare

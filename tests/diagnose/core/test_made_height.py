@@ -1,0 +1,106 @@
+"""How high a worn side may stand as it was made: by what the maker left on the flanks that are seen, in closed form."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gearwear.design.side import Side
+from gearwear.design.surface import FILLET, FLANK, locate
+from gearwear.diagnose.found import form_of_all
+from gearwear.diagnose.made_height import MadeHeight, fillets_off, made_height
+from gearwear.diagnose.pattern import Pattern
+from gearwear.placing.cells import CellGrid, bin_points
+from tests.placing.placing import designed
+from tests.synthetic import Recipe, make_scan
+
+PINION = designed()
+LEFT = frozenset({Side.LEFT})
+TURN = 2.0 * np.pi / PINION.teeth
+
+
+@pytest.fixture(scope="module")
+def fit():
+    """Of a scan without wear, whose right flanks are used."""
+    scan = make_scan(Recipe(jitter=1.0, noise_um=6.0, pose="none").of_size(20_000), 3)
+    located = locate(scan.points, PINION)
+    cells = bin_points(located, CellGrid.for_scan(PINION, len(located)), clip=0.3)
+    right = cells.seen & (cells.points.surface == FLANK) & (cells.points.side == int(Side.RIGHT))
+    return SimpleNamespace(cells=cells, target=np.zeros(len(cells.seen)), use=right)
+
+
+def of_tooth(fit, height):
+    """A height of each tooth, (teeth,) mm, on all its flanks."""
+    flank = fit.cells.seen & (fit.cells.points.surface == FLANK)
+    return np.where(flank, np.asarray(height)[fit.cells.points.tooth], 0.0)
+
+
+def waves_across(fit, amplitude):
+    """The same on all right flanks: two waves across the face."""
+    height = np.nan_to_num(fit.cells.points.position[:, 2])
+    return np.where(fit.use, amplitude * np.sin(4.0 * np.pi * height / PINION.face_width), 0.0)
+
+
+def test_a_form_of_all_teeth_may_be_on_the_worn_side_too(fit):
+    """Waves across the face of the right flanks, 12 / √2 µm RMS; one that goes round the gear is no form of all teeth, and an offset of all is known."""
+    field = waves_across(fit, 0.012)
+    waves = Pattern(0, "right only", 2.0, 0.0, 0.008, 0.012, 0.0, field)
+    once = Pattern(1, "right only", 2.0, 0.0, 0.008, 0.012, 0.0, field)
+    made = made_height(LEFT, fit, [form_of_all((waves, once), len(field)), np.full(len(field), 0.05)])
+    assert made.of(Side.LEFT) == made.std == pytest.approx(0.012 / np.sqrt(2.0), rel=0.01)
+    assert made.of(Side.RIGHT) == 0.0
+    assert made_height(frozenset(), fit, [field]) == MadeHeight()
+    assert made_height(LEFT, fit, [form_of_all((once,), len(field))]) == MadeHeight()
+
+
+def test_teeth_off_each_by_itself_say_as_much_of_thickness_as_they_scatter(fit):
+    """By a normal amount each, drawn many times; kinds and what sound flanks are bowed by add up as errors do."""
+    rng, squares = np.random.default_rng(5), []
+    for _ in range(200):
+        made = made_height(LEFT, fit, [of_tooth(fit, rng.normal(0.0, 0.009, PINION.teeth))])
+        squares.append(made.std**2)
+    assert np.sqrt(np.mean(squares)) == pytest.approx(0.009, rel=0.05)
+    by_turns = of_tooth(fit, 0.009 * (-1.0) ** np.arange(PINION.teeth))  # neighbours are 18 µm apart
+    assert made_height(LEFT, fit, [by_turns]).std == pytest.approx(0.009 * np.sqrt(2.0), rel=1e-3)
+    both = made_height(LEFT, fit, [by_turns, waves_across(fit, 0.01)], 0.012)
+    assert both.std == pytest.approx(np.sqrt(2.0 * 0.009**2 + 0.5 * 0.01**2 + 0.012**2), rel=0.01)
+
+
+@pytest.mark.parametrize("times", [1, 2, 3])
+def test_what_goes_slowly_round_the_gear_says_little_of_thickness(fit, times):
+    """A wave a sin(kτ) from tooth to tooth has differences of neighbours of mean square a² (1 − cos kτ), and half of that is (a sin(kτ/2))²."""
+    wave = of_tooth(fit, 0.02 * np.sin(times * TURN * np.arange(PINION.teeth)))
+    assert made_height(LEFT, fit, [wave]).std == pytest.approx(0.02 * np.sin(0.5 * times * TURN), rel=0.01)
+
+
+def off_by(fit, height):
+    """The fit, with fillets that stand off by a height, (teeth, 2) mm, left first."""
+    points = fit.cells.points
+    fillet = fit.cells.seen & (points.surface == FILLET)
+    residual = np.where(fillet, np.asarray(height)[points.tooth, np.where(points.side == int(Side.LEFT), 0, 1)], 0.0)
+    return SimpleNamespace(
+        cells=fit.cells, use=fit.cells.seen, weight=np.full(len(residual), 4.0), residual=lambda model: residual
+    )
+
+
+def test_fillets_stand_off_as_far_as_those_of_sound_sides_do(fit):
+    """Left 3 µm high, right 4 µm low: the right ones tell beside left flanks that are worn, √((3² + 4²) / 2) both where both are, or none."""
+    off = off_by(fit, np.tile([0.003, -0.004], (PINION.teeth, 1)))
+    assert fillets_off(off, (), LEFT) == pytest.approx(0.004)
+    for worn in (frozenset(Side), frozenset[Side]()):
+        assert fillets_off(off, (), worn) == pytest.approx(np.sqrt(12.5) * 1e-3)
+    assert fillets_off(SimpleNamespace(**{**vars(off), "use": off.cells.points.surface == FLANK}), (), LEFT) == 0.0
+
+
+def test_fillets_that_scatter_by_chance_stand_off_by_what_chance_leaves(fit):
+    """Each tooth off by a normal amount of its own: of mean² less its variance what is above 0 comes to 2 φ(1) = 0.484 of the mean of mean²."""
+    rng, told, means = np.random.default_rng(8), [], []
+    for _ in range(400):
+        height = rng.normal(0.0, 0.005, (PINION.teeth, 2))
+        told.append(fillets_off(off_by(fit, height), (), LEFT))
+        means.append(height[:, 1].mean())
+    assert np.mean(np.square(told)) / np.mean(np.square(means)) == pytest.approx(
+        2.0 * np.exp(-0.5) / np.sqrt(2.0 * np.pi), abs=0.2
+    )
