@@ -123,6 +123,7 @@ MUTATIONS = [
         ("diagnose/elimination.py", "e.accepted or e.faint or", "e.accepted or", "diagnose/core/test_elimination.py"),
         ("diagnose/worn_sides.py", "for side in Side if apart.cost < made else ():", "for side in ():", "diagnose/core/test_of_the_part.py"),
         ("diagnose/worn_sides.py", "/ tolerance) ** 2 / len(Side)", "/ tolerance) ** 2", "diagnose/core/test_worn_sides.py"),
+        ("diagnose/found.py", "if told else 0.0", "if False else 0.0", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "set(Side) - worn or set(Side)", "set(Side)", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "squares.append(mean**2 - float(", "squares.append(mean**2 - 0.0 * float(", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "return 0.5 * float(squares.sum())", "return float(squares.sum())", "diagnose/core/test_made_height.py"),

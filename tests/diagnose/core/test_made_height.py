@@ -9,12 +9,15 @@ import pytest
 
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, locate
+from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.found import form_of_all
+from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.made_height import MadeHeight, fillets_off, made_height
 from gearwear.diagnose.pattern import Pattern
-from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.placing.cells import CellGrid, bin_points, noise
+from tests.diagnose.plain import PLAIN
 from tests.placing.placing import designed
-from tests.synthetic import Recipe, make_scan
+from tests.synthetic import Recipe, SlidingWear, make_scan
 
 PINION = designed()
 LEFT = frozenset({Side.LEFT})
@@ -104,3 +107,16 @@ def test_fillets_that_scatter_by_chance_stand_off_by_what_chance_leaves(fit):
     assert np.mean(np.square(told)) / np.mean(np.square(means)) == pytest.approx(
         2.0 * np.exp(-0.5) / np.sqrt(2.0 * np.pi), abs=0.2
     )
+
+
+@pytest.mark.parametrize("off_um", [0.0, 4.0])
+def test_a_worn_side_is_known_no_better_than_fillets_stand_by_their_flanks(off_um):
+    """Left flanks slid off, all fillets cut low by as much, and no form of the root searched: nearly that (they take a little part in the pose), or nothing."""
+    recipe = Recipe(jitter=1.0, noise_um=6.0, pose="none", wear=(SlidingWear(60.0, 1, law="archard"),))
+    located = locate(make_scan(recipe.of_size(20_000), 3).points, PINION)
+    cells = bin_points(located, CellGrid.for_scan(PINION, len(located)), clip=0.3)
+    fillet = cells.points.surface == FILLET
+    low = cells.with_deviation(cells.points.deviation - np.where(fillet, 1e-3 * off_um, 0.0))
+    searched = tuple(effect for effect in PLAIN if effect.name != ROOT_FORM)
+    loop = close_loop(low, noise(low), make_context(low, np.eye(3), False), searched, worn=LEFT)
+    assert 0.8 * off_um - 0.1 < 1e3 * loop.made.of(Side.LEFT) < 1.05 * off_um + 0.3
