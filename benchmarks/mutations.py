@@ -125,7 +125,7 @@ MUTATIONS = [
         ("diagnose/worn_sides.py", "/ tolerance) ** 2 / len(Side)", "/ tolerance) ** 2", "diagnose/core/test_worn_sides.py"),
         ("diagnose/found.py", "if told else 0.0", "if False else 0.0", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "set(Side) - worn or set(Side)", "set(Side)", "diagnose/core/test_made_height.py"),
-        ("diagnose/made_height.py", "squares.append(mean**2 - float(", "squares.append(mean**2 - 0.0 * float(", "diagnose/core/test_made_height.py"),
+        ("diagnose/made_height.py", "float(mean**2 - variance)", "float(mean**2)", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "return 0.5 * float(squares.sum())", "return float(squares.sum())", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "np.roll(values, 1, axis=0)", "0.0 * values", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "variance += _variance_alike(known, values) +", "variance +=", "diagnose/core/test_made_height.py"),

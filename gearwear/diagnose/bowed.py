@@ -13,6 +13,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
+from gearwear.diagnose.clustered import fit_by_teeth
 from gearwear.diagnose.effects.base import helix_place, profile_coordinate
 from gearwear.diagnose.fit import Fit, Model
 
@@ -31,23 +32,16 @@ def bow_of_sound(fit: Fit, model: Model, worn: frozenset[Side]) -> float:
     Notes
     -----
     All sound flanks together are fitted by ``a + b u + c u² + d v + e v²`` (u along the profile, v along the face, −1 … 1); the mean of ``c u² + e v²`` over
-    the flank is what the bows make it lie off. Its variance is that of teeth that each scatter by themselves (Liang and Zeger 1986), and is taken off its
-    square: what chance makes of flanks without a bow is none.
+    the flank is what the bows make it lie off. Its variance (`fit_by_teeth`) is taken off its square: what chance makes of flanks without a bow is none.
     """
     points = fit.cells.points
     flank = (points.surface == FLANK) & fit.cells.seen & ~np.isin(points.side, [int(side) for side in worn])
     used = flank & fit.use
-    tooth, teeth = np.unique(points.tooth[used], return_inverse=True)
-    design, weight = _design(fit, used), fit.weight[used]
-    if len(tooth) <= design.shape[1]:  # of fewer nothing tells how far a bow is chance
+    fitted = fit_by_teeth(_design(fit, used), fit.weight[used], fit.residual(model)[used], points.tooth[used])
+    if fitted is None:
         return 0.0
-    inverse = np.linalg.pinv(design.T @ (weight[:, None] * design), rcond=1e-9, hermitian=True)
-    residual = fit.residual(model)[used]
-    sizes = inverse @ (design.T @ (weight * residual))
-    scores = np.zeros((len(tooth), design.shape[1]))
-    np.add.at(scores, teeth, design * (weight * (residual - design @ sizes))[:, None])
-    spread = inverse @ scores.T @ scores @ inverse * len(tooth) / (len(tooth) - 1)
-    mean = _design(fit, flank).mean(axis=0) * np.array([0.0, 0.0, 1.0, 0.0, 1.0])[: design.shape[1]]
+    sizes, spread = fitted
+    mean = _design(fit, flank).mean(axis=0) * np.array([0.0, 0.0, 1.0, 0.0, 1.0])[: len(sizes)]
     low, variance = float(mean @ sizes), float(mean @ spread @ mean)
     return math.sqrt(max(low**2 - variance, 0.0))
 

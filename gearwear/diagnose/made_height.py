@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
+from gearwear.diagnose.clustered import fit_by_teeth
 from gearwear.diagnose.fit import Fit, Model
 
 
@@ -84,17 +85,14 @@ def fillets_off(fit: Fit, model: Model, worn: frozenset[Side]) -> float:
     Notes
     -----
     Fillets tell how high a worn flank was made as far as they were cut with it. How far flanks and fillets of a gear stand apart those that are seen show.
-    The variance of a mean is that of teeth that each scatter by themselves (Liang and Zeger 1986).
+    The variance of a mean is that of `fit_by_teeth`.
     """
     points, squares = fit.cells.points, list[float]()
     residual, weight = fit.residual(model), fit.weight
     for side in set(Side) - worn or set(Side):
         used = (points.surface == FILLET) & (points.side == int(side)) & fit.use
-        tooth, teeth = np.unique(points.tooth[used], return_inverse=True)
-        if len(tooth) < 2:
-            continue
-        whole = float(weight[used].sum())
-        mean = float(weight[used] @ residual[used]) / whole
-        scores = np.bincount(teeth, weight[used] * (residual[used] - mean)) / whole
-        squares.append(mean**2 - float(scores @ scores) * len(tooth) / (len(tooth) - 1))
+        fitted = fit_by_teeth(np.ones((int(used.sum()), 1)), weight[used], residual[used], points.tooth[used])
+        if fitted is not None:
+            (mean,), ((variance,),) = fitted
+            squares.append(float(mean**2 - variance))
     return math.sqrt(max(float(np.mean(squares)), 0.0)) if squares else 0.0
