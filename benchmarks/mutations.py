@@ -129,6 +129,7 @@ MUTATIONS = [
         ("diagnose/made_height.py", "return 0.5 * float(squares.sum())", "return float(squares.sum())", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "np.roll(values, 1, axis=0)", "0.0 * values", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "variance += _variance_alike(known, values) +", "variance +=", "diagnose/core/test_made_height.py"),
+        ("diagnose/made_height.py", "_over_the_face(known, values) for", "values for", "diagnose/core/test_made_height.py"),
         ("diagnose/pitch_point.py", "rules().shape_price + off**2", "rules().shape_price", "diagnose/core/test_pitch_point.py"),
         ("diagnose/worn_sides.py", "context.mate is not None or", "", "diagnose/core/test_pitch_point.py"),
         ("diagnose/worn_sides.py", "fitted = self._alike(beside, loss, worn, fitted.weight)", "pass", "diagnose/core/test_worn_sides.py"),

@@ -381,7 +381,7 @@ def account(
     if worn := problem.context.open_sides:
         stand_off = fillets_off(fit, model, problem.context.worn) if told else 0.0
         besides = math.hypot(2.0 * bow_of_sound(fit, model, problem.context.worn), stand_off)
-        made = made_height(worn, fit, [form_of_all(patterns, len(fit.target)), *off], besides)
+        made = made_height(worn, fit, off, form_of_all(patterns, len(fit.target)), besides)
     hidden = fit.hidden(model, noise)
     start, end = steps[len(levels)], steps[-1]
     return Loop(

@@ -34,12 +34,14 @@ class MadeHeight:
         return self.std if side in self.sides else 0.0
 
 
-def made_height(worn: frozenset[Side], fit: Fit, off: list[Floats], besides: float = 0.0) -> MadeHeight:
-    """Of sides `worn` throughout: as much as what the maker left of each kind, `off` (m,) mm, varies over the flanks that are seen (RMS): who is off by
-    that in form and pitch is no better in thickness. And what else leaves it open, `besides`, mm.
+def made_height(worn: frozenset[Side], fit: Fit, told: list[Floats], untold: Floats, besides: float = 0.0) -> MadeHeight:
+    """Of sides `worn` throughout: as much as what the maker left varies over the flanks that are seen (RMS): who is off by that in form and pitch is
+    no better in thickness. Of each kind that is `told`, (m,) mm, only its mean over the face counts; of what is `untold`, (m,) mm, all. And what else
+    leaves it open, `besides`, mm.
 
     Notes
     -----
+    A lead, a crowning along the face, a twist or the marks of a feed leave the mean over the face where it is, and so say nothing of how high a flank stands.
     Of what differs from tooth to tooth that of neighbours counts, as in a single pitch deviation: what goes slowly round the gear, as the sum of these or a blank off
     its axis, turns both flanks of a tooth alike and tells nothing of its thickness. It is the root of half their mean square difference, that of teeth which scatter each by itself.
     """
@@ -50,10 +52,17 @@ def made_height(worn: frozenset[Side], fit: Fit, off: list[Floats], besides: flo
         return MadeHeight()
     grid = fit.cells.grid
     variance = besides**2
-    for field in off:
-        known, values = (grid.flank_shape(one) for one in (seen, np.where(seen, field, 0.0)))
+    known = grid.flank_shape(seen)
+    untold, *told = (grid.flank_shape(np.where(seen, field, 0.0)) for field in (untold, *told))
+    for values in (untold, *(_over_the_face(known, values) for values in told)):
         variance += _variance_alike(known, values) + _variance_of_neighbours(known, values)
     return MadeHeight(worn, math.sqrt(variance)) if variance > 0.0 else MadeHeight()
+
+
+def _over_the_face(seen: Bools, values: Floats) -> Floats:
+    """Values (teeth, 2, rows, columns), each the mean of its row across the face; 0 where they are not seen."""
+    number = np.maximum(seen.sum(axis=2, keepdims=True), 1)
+    return np.where(seen, values.sum(axis=2, keepdims=True) / number, 0.0)
 
 
 def _variance_alike(seen: Bools, values: Floats) -> float:

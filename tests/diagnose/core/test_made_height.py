@@ -51,23 +51,23 @@ def test_a_form_of_all_teeth_may_be_on_the_worn_side_too(fit):
     field = waves_across(fit, 0.012)
     waves = Pattern(0, "right only", 2.0, 0.0, 0.008, 0.012, 0.0, field)
     once = Pattern(1, "right only", 2.0, 0.0, 0.008, 0.012, 0.0, field)
-    made = made_height(LEFT, fit, [form_of_all((waves, once), len(field)), np.full(len(field), 0.05)])
+    made = made_height(LEFT, fit, [np.full(len(field), 0.05)], form_of_all((waves, once), len(field)))
     assert made.of(Side.LEFT) == made.std == pytest.approx(0.012 / np.sqrt(2.0), rel=0.01)
     assert made.of(Side.RIGHT) == 0.0
-    assert made_height(frozenset(), fit, [field]) == MadeHeight()
-    assert made_height(LEFT, fit, [form_of_all((once,), len(field))]) == MadeHeight()
+    assert made_height(frozenset(), fit, [], field) == MadeHeight()
+    assert made_height(LEFT, fit, [], form_of_all((once,), len(field))) == MadeHeight()
 
 
 def test_teeth_off_each_by_itself_say_as_much_of_thickness_as_they_scatter(fit):
     """By a normal amount each, drawn many times; kinds and what sound flanks are bowed by add up as errors do."""
-    rng, squares = np.random.default_rng(5), []
+    rng, squares, none = np.random.default_rng(5), [], np.zeros(len(fit.target))
     for _ in range(200):
-        made = made_height(LEFT, fit, [of_tooth(fit, rng.normal(0.0, 0.009, PINION.teeth))])
+        made = made_height(LEFT, fit, [of_tooth(fit, rng.normal(0.0, 0.009, PINION.teeth))], none)
         squares.append(made.std**2)
     assert np.sqrt(np.mean(squares)) == pytest.approx(0.009, rel=0.05)
     by_turns = of_tooth(fit, 0.009 * (-1.0) ** np.arange(PINION.teeth))  # neighbours are 18 µm apart
-    assert made_height(LEFT, fit, [by_turns]).std == pytest.approx(0.009 * np.sqrt(2.0), rel=1e-3)
-    both = made_height(LEFT, fit, [by_turns, waves_across(fit, 0.01)], 0.012)
+    assert made_height(LEFT, fit, [by_turns], none).std == pytest.approx(0.009 * np.sqrt(2.0), rel=1e-3)
+    both = made_height(LEFT, fit, [by_turns], waves_across(fit, 0.01), 0.012)
     assert both.std == pytest.approx(np.sqrt(2.0 * 0.009**2 + 0.5 * 0.01**2 + 0.012**2), rel=0.01)
 
 
@@ -75,7 +75,28 @@ def test_teeth_off_each_by_itself_say_as_much_of_thickness_as_they_scatter(fit):
 def test_what_goes_slowly_round_the_gear_says_little_of_thickness(fit, times):
     """A wave a sin(kτ) from tooth to tooth has differences of neighbours of mean square a² (1 − cos kτ), and half of that is (a sin(kτ/2))²."""
     wave = of_tooth(fit, 0.02 * np.sin(times * TURN * np.arange(PINION.teeth)))
-    assert made_height(LEFT, fit, [wave]).std == pytest.approx(0.02 * np.sin(0.5 * times * TURN), rel=0.01)
+    assert made_height(LEFT, fit, [wave], np.zeros(len(wave))).std == pytest.approx(0.02 * np.sin(0.5 * times * TURN), rel=0.01)
+
+
+def test_what_goes_along_the_face_alone_says_nothing_of_thickness(fit):
+    """A lead, a crowning, a twist and marks of a feed have the same mean over the face on every profile; beside them a slope counts as it does alone."""
+    grid = fit.cells.grid
+    row, column = np.meshgrid(np.arange(grid.rows), np.arange(grid.flank), indexing="ij")
+    along, across = (2.0 * (row + 0.5) / grid.rows - 1.0, (column + 0.5) / grid.flank)
+
+    def of_all_flanks(shape):
+        field = np.zeros(len(fit.target))
+        grid.flank_shape(field)[...] = 0.02 * shape
+        return field
+
+    slope, none = of_all_flanks(across), of_all_flanks(0.0 * across)
+    alone = made_height(LEFT, fit, [slope], none).std
+    assert alone == pytest.approx(slope[fit.use].std(), rel=0.01)
+    for shape in (along, along**2, along * across, (-1.0) ** (row // 2)):
+        beside = of_all_flanks(shape)
+        assert made_height(LEFT, fit, [beside], none).std < 0.05 * beside[fit.use].std()
+        assert made_height(LEFT, fit, [slope, beside], none).std == pytest.approx(alone, rel=0.01)
+        assert made_height(LEFT, fit, [], beside).std == pytest.approx(beside[fit.use].std(), rel=0.02)
 
 
 def off_by(fit, height):
