@@ -29,8 +29,8 @@ NOT_BENT = 4.0
 """Standard deviations of a value that its second difference may be by noise, at a least."""
 WIDTHS = (5, 3, 1)
 """Neighbours that are averaged, as long as that does not hide the bottom of a pit."""
-HIDDEN = 0.25
-"""Share of a window that nobody looks at, at most: a hollow is no narrower."""
+HIDDEN = 1.0 / 3.0
+"""Share of a window, in all, that nobody looks at, at most; what is looked at more than once counts as often, and takes more off for luck."""
 HIDES = 2.0
 """Standard deviations by which fewer neighbours must show a lower least for that."""
 

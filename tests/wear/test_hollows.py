@@ -142,7 +142,7 @@ def test_a_bottom_that_nobody_saw_is_none():
     curve = np.tile(slope, (1 + len(ACROSS), 8, 1))
     flanks, flat = [in_sections(curve), in_sections(0.0 * curve)], np.zeros(n)
     seen = np.arange(n) <= 20
-    assert within(flanks, ALIKE, flat, 9)[0][20] == pytest.approx(a * (half + 1))
+    assert within(flanks, ALIKE, flat, 9)[0][20] == pytest.approx(a * (half + 2))
     assert within(flanks, ALIKE, flat, 9, seen)[0][20] == pytest.approx(0.0)
     assert within(flanks, ALIKE, flat, 9, seen)[0][18] == pytest.approx(a * 2)
     assert within(flanks, ALIKE, flat, 9, seen)[0][35] == 0.0
@@ -166,8 +166,8 @@ def test_within_a_window_a_parabola_hides_what_its_mean_says():
     by_make = within([in_sections(0.0 * curve)] * 2, ALIKE, 2.0 * parabola, 2 * half + 1)
     assert by_make[0] == pytest.approx(depth)
     assert by_make[2] == pytest.approx(np.zeros((2, n)), abs=1e-12)
-    # Cut off at the end of the face; the least is looked for an eighth of a window beyond its own, half of the widest gap that may be to the next.
-    assert depth[0] == pytest.approx(2.0 * (parabola[: half + 1].mean() - parabola[half + 1]))
+    # Cut off at the end of the face; the least is looked for half a window beyond its own.
+    assert depth[0] == pytest.approx(2.0 * (parabola[: half + 1].mean() - parabola[half + 2]))
     # The band lies 5 µm above the radius itself.
     above = curve + 0.005 * (np.arange(len(curve)) > 0)[:, None, None]
     assert within([in_sections(above), in_sections(curve)], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)

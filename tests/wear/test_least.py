@@ -119,7 +119,7 @@ def test_places_hide_no_hollow_and_are_the_same_from_either_end(width):
         for middle in middles:
             covered[max(middle - width // 2, 0) : middle + width // 2 + 1] = True
         assert (covered[0] and covered[-1]) or len(middles) == 1
-        assert (~covered).sum() < 0.25 * width
+        assert (~covered).sum() < width / 3.0
         assert len(middles) - count / width < 2.0
         # They lie evenly: none overlaps its neighbours by more than the others do, but for one section, or two next to the middle.
         apart = np.diff(middles)
