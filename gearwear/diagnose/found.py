@@ -331,7 +331,7 @@ def account(
     """
     evidence, together = _with_taken_back(fit, problem, model, evidence)
     order = _by_gain(problem, model)
-    order.sort(key=lambda i: not _unnamed(model[i], evidence[i]))  # what the drawing leaves open first
+    order.sort(key=lambda i: not _unnamed(model[i], evidence[i], problem.context))  # what the drawing leaves open first
     model, evidence = tuple(model[i] for i in order), [evidence[i] for i in order]
     steps = [fit.errors(model[:n], fold) for n in range(len(model) + 1)]
     amplitudes, parts = _amplitudes(fit, problem, model), fit.parts(model)
@@ -368,7 +368,7 @@ def account(
         )  # fmt: skip
     motion = np.zeros(6)
     motion[fit.dictionary.motion] = amplitudes[: len(fit.dictionary.pose)]
-    levels = tuple(one for one, told in zip(found, evidence, strict=True) if _unnamed(one.candidate, told))
+    levels = tuple(one for one, told in zip(found, evidence, strict=True) if _unnamed(one.candidate, told, problem.context))
     named = tuple(found[len(levels) :])
     told = problem.context.fillets_told and ROOT_FORM not in {candidate.name for candidate in model}
     off = [
@@ -421,9 +421,10 @@ def _amplitudes(fit: Fit, problem: Problem, model: Model) -> Floats:
     return amplitudes
 
 
-def _unnamed(candidate: Candidate, evidence: Evidence) -> bool:
+def _unnamed(candidate: Candidate, evidence: Evidence, context: Context) -> bool:
     """Whether an effect is no finding: open by the drawing, faint, or taken back by others."""
-    return candidate.effect.kind is Kind.FORM or evidence.faint or evidence.taken_back
+    effect = candidate.effect
+    return effect.kind is Kind.FORM or effect.as_made(context) or evidence.faint or evidence.taken_back
 
 
 def _with_taken_back(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence]) -> tuple[list[Evidence], Floats | None]:

@@ -1,8 +1,14 @@
 import numpy as np
 import pytest
 
+from gearwear.design.surface import locate
 from gearwear.diagnose.effects.edge_rounding import EFFECT
+from gearwear.diagnose.loop import close_loop, make_context
+from gearwear.placing.cells import CellGrid, bin_points, noise
+from tests.diagnose.plain import PLAIN
 from tests.diagnose.sample import ODD, Example, context, feet
+from tests.placing.placing import designed
+from tests.synthetic import Recipe, make_scan
 
 EXAMPLES = [
     Example({"amount_um": 50.0, "width_mm": 4.0}, (0.05,), (4.0,)),
@@ -34,3 +40,16 @@ def test_depth_at_an_edge_is_the_moving_average_of_a_wedge():
     face = np.isclose(feet().position[:, 2], 0.12 * 6.35) & (feet().surface == 2)
     ratio = -deep[face, 0] / (1 - 2 * 0.762 / 2.6) ** 2
     np.testing.assert_allclose(ratio, np.sin(half) / np.sin(0.5 * np.radians(90.0 - 36.346184)), rtol=1e-6)
+
+
+@pytest.mark.parametrize("chamfer", [0.0, 0.3])
+def test_beside_a_chamfer_edges_that_fall_off_are_as_they_were_cut(chamfer):
+    """They are taken out either way, and no spot of the scanner's where the corner is a chamfer's, which may be longer than drawn."""
+    gear = designed().recut(tip_chamfer=chamfer) if chamfer else designed()
+    located = locate(make_scan(Recipe(jitter=1.0, noise_um=6.0, pose="none").of_size(40_000), 3).points, gear)
+    cells = bin_points(located, CellGrid.for_scan(gear, len(located)), clip=0.3)
+    about = make_context(cells, np.eye(3), False)
+    falls = np.where(cells.seen, 0.06 * EFFECT.basis(cells.points, about, (1.8,))[:, 0], 0.0)
+    low = cells.with_deviation(cells.points.deviation + falls)
+    loop = close_loop(low, noise(low), about, (*PLAIN, EFFECT))
+    assert [EFFECT.name in {one.name for one in told} for told in (loop.effects, loop.form)] == [not chamfer, bool(chamfer)]

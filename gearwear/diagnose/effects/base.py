@@ -215,6 +215,10 @@ class Effect(Protocol):
         """Largest amplitude that the drawing allows, inner units; None where it has no say."""
         ...
 
+    def as_made(self, context: Context) -> bool:
+        """Whether what it shows may as well be how the part was made, within what its drawing says: it is taken out then, and not named."""
+        ...
+
     def magnitudes(self, amplitudes: Floats) -> Floats:
         """Of each amplitude, of which a share may be an error of the effect's form; inner units."""
         ...
@@ -272,6 +276,9 @@ class CatalogueEffect:
 
     def tolerance(self, context: Context) -> float | None:
         return None
+
+    def as_made(self, context: Context) -> bool:
+        return False
 
     def magnitudes(self, amplitudes: Floats) -> Floats:
         return amplitudes

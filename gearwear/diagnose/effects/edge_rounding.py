@@ -52,6 +52,11 @@ class EdgeRounding(CatalogueEffect):
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         return length_bracket(shape[0])
 
+    def as_made(self, context: Context) -> bool:
+        """Of bevelled edges: no chamfer is cut to a tenth of a millimetre, and the land beside one that is longer looks rounded."""
+        spec = context.gear.spec
+        return max(spec.tip_chamfer, spec.tip_rounding, spec.end_edge) > 0.0
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear
         along = np.full(len(points), np.inf)  # distance from the tip corner
