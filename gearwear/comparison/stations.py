@@ -120,16 +120,24 @@ def compare(
                 raise InputError(f"{design.source}: {error}" if design.source else str(error)) from None
     scanned = _scanned(design, scans, part, before, units, loop, stream, progress)
     progress("wear")
-    wear, wear_before = each([partial(scanned.find, scanned.as_made), partial(without_loop, scanned.measured, scanned.unworn)])
+    wearless: list[Callable[[], Any]] = [partial(_inspected, scanned.measured, inspection), partial(_remarks, scanned.measured)]
+    # What needs no wear waits for the contact, beside which there is room; where there is none, it fills up what finding the wear leaves.
+    early, late = (wearless, []) if design.pair is None else ([], wearless)
+    calls: list[Callable[[], Any]] = [
+        partial(scanned.find, scanned.as_made),
+        partial(without_loop, scanned.measured, scanned.unworn),
+    ]
+    wear, wear_before, *before_contact = each([*calls, *early])
     progress("worn solid")
     lost = Lost.of(scanned, wear, wear_before, DRAWS if design.pair is not None else 0)
-    with beside(_apart_from_contact(scanned, lost, inspection)) as others:
+    with beside([*_apart_from_contact(scanned, lost), *late]) as others:
         measured, points, run = scanned.measured, scanned.as_made_points, Run.of(scanned, lost)
         met = None if design.pair is None else _against_mate(design, scanned, lost, run, points, ahead, progress)
         law = None if met is None else met.law
         laws = fit_laws(wear, points, scanned.as_made, measured.context, measured.loop, scanned.scatter, law)
         progress("thickness and inspection")
-        changes, (thickness, thicker), inspected, (solids, boolean), undecided, remarks = others()
+        (solids, boolean), (thickness, thicker), changes, undecided, *beside_contact = others()
+    inspected, remarks = (*before_contact, *beside_contact)
     most = thickness.below_drawing()
     thinner = None if most is None else SectionLoss(most.value, most.tooth, most.at_z)
     pair = None if met is None else _pair(design, met, thickness, thinner)
@@ -248,24 +256,22 @@ class Lost:
         return cls(wear, before_loop, effects, loop is not None and bool(effects or loop.patterns), surface, worn)
 
 
-def _apart_from_contact(scanned: Scanned, lost: Lost, inspection: bool) -> list[Callable[[], Any]]:
-    """Calls that need neither the contact nor one another: what the effects change of the wear, thickness with what they change of it,
-    inspection, solids, the wear with other sides worn throughout, and remarks on the scan, for which neighbouring points are compared."""
+def _apart_from_contact(scanned: Scanned, lost: Lost) -> list[Callable[[], Any]]:
+    """Calls that need neither the contact nor one another, the longest first: solids, thickness with what the effects change of it, what they change of
+    the wear, and the wear with other sides worn throughout."""
     measured, unworn = scanned.measured, scanned.unworn
     left_in = lost.effects if lost.taken_out else None
     # As stiff as with the effects taken out: what differs is what an effect does, not which stiffness is a little likelier.
     quick = partial(scanned.find, limits=False, errors=False, as_stiff=lost.wear.as_stiff)
     return [
+        partial(_solid, measured, lost.worn, lost.wear),
+        partial(thickness_and_changes, measured, unworn, left_in, lost.wear),
         tuple
         if left_in is None
         else partial(
             wear_changes, measured, left_in, scanned.as_made, scanned.scatter, quick, lost.wear, lost.before_loop, unworn
         ),
-        partial(thickness_and_changes, measured, unworn, left_in, lost.wear),
-        partial(_inspected, measured, inspection),
-        partial(_solid, measured, lost.worn, lost.wear),
         partial(_undecided, measured.undecided if unworn is None else ()),
-        lambda: measured.remarks,
     ]
 
 
@@ -322,6 +328,11 @@ def _undecided(gears: Sequence[MeasuredGear]) -> tuple[tuple[float, float], ...]
     """Worn volume and its standard deviation with other sides worn throughout, mm³."""
     wears = [find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone) for gear in gears]
     return tuple((wear.volume, wear.volume_std) for wear in wears)
+
+
+def _remarks(measured: MeasuredGear) -> tuple[str, ...]:
+    """Remarks on the scan, for which neighbouring points are compared."""
+    return measured.remarks
 
 
 def _inspected(measured: MeasuredGear, wanted: bool) -> tuple[Inspection, ...]:

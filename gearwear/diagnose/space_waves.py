@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft, ndimage
+from scipy import fft
 from scipy.optimize import minimize
 from scipy.special import stdtr
 
@@ -201,7 +201,8 @@ def _means(values: Floats, weight: Floats, label: Ints) -> Floats:
 def _strongest(sheet: _Sheet, noise: float) -> SpaceWave | None:
     """The strongest wave; None where one half of the teeth does not tell the other of it, each of a wave it found by itself."""
     halves = [sheet.every_other(start) for start in range(2)]
-    lines = [_climbed(half.gain_about, _line(half)) for half in halves]
+    known = _Lines.of(sheet)  # the halves have their cells at the same places
+    lines = [_climbed(half.gain_about, known.strongest(half)) for half in halves]
     told = [_told(half, other, line) for half, other, line in zip(halves, reversed(halves), lines, strict=True)]
     if not all(one.gain > rules().errors * one.error for one in told):
         return None
@@ -250,46 +251,86 @@ def _told(half: _Sheet, other: _Sheet, vector: Floats) -> _Told:
     return _Told(float(gains.mean()), error, float(stdtr(len(gains) - 1.0, -gains.mean() / error)))
 
 
-def _line(sheet: _Sheet) -> Floats:
-    """The line of the spectrum in space that stands out most of those of its length, waves per mm (3,)."""
-    vectors, power, step = _spectrum(sheet)
-    rings, floors = np.rint(np.hypot(*vectors[:2]) / (SHELL * step[0])), np.rint(np.abs(vectors[2]) / (SHELL * step[2]))
-    shell = (rings * (floors.max() + 1.0) + floors).astype(np.int64)
-    shell = (np.cumsum(np.bincount(shell) > 0) - 1)[shell]  # those that have any line, numbered
-    typical = ndimage.median(power, shell, np.arange(shell.max() + 1))[shell]
-    return np.asarray(vectors[:, int(np.argmax(power / np.maximum(typical, 1e-300)))])
+@dataclass(frozen=True, slots=True)
+class _Lines:
+    """The lines of the spectrum in space that are looked for, of cells at the same places.
+
+    Parameters
+    ----------
+    voxel : (n,) int
+        In which of all voxels each cell lies.
+    extent, shape : tuple of int, list of int
+        Voxels along x, y and z: those that hold cells, and with the room that the transform needs.
+    along : list of (k,) int
+        Lines along each axis up to the shortest wave.
+    which : tuple of three (l,) int
+        Those of all directions that are looked for, among these.
+    vectors : (3, l) float
+        Waves per mm.
+    order : (l,) int
+        The lines shell by shell: those of about one length across and along the axis.
+    ends : (s,) int
+        Where each shell but the last ends among these.
+    """
+
+    voxel: Ints
+    extent: tuple[int, ...]
+    shape: list[int]
+    along: list[Ints]
+    which: tuple[Ints, ...]
+    vectors: Floats
+    order: Ints
+    ends: Ints
+
+    @classmethod
+    def of(cls, sheet: _Sheet) -> _Lines:
+        """Of all cells of a sheet, whatever they weigh."""
+        position, radius = sheet.points.position, sheet.grid.gear.tip_radius
+        shortest = max(CELLS_PER_WAVE * sheet.grid.size, radius / WAVES_PER_RADIUS)
+        voxel = shortest / VOXELS_PER_WAVE
+        at = np.rint((position - position.min(axis=0)) / voxel).astype(np.int64)
+        extent = tuple((at.max(axis=0) + 1).tolist())
+        shape = [fft.next_fast_len(2 * one) for one in extent]
+        # As many lines to either side of 0 along each axis as the shortest wave has, less than half of all.
+        along = [np.r_[: int(n / VOXELS_PER_WAVE) + 1, n - int(n / VOXELS_PER_WAVE) : n] for n in shape]
+        waves = [np.fft.fftfreq(n, voxel)[own] for n, own in zip(shape, along, strict=True)]
+        ahead = waves[0][waves[0] >= 0.0]  # a wave and its mirror image are one
+        across = np.hypot(ahead[:, None], waves[1][None, :])
+        length = np.sqrt(across[:, :, None] ** 2 + waves[2] ** 2)
+        which = np.nonzero((length >= 1.0 / radius) & (length <= 1.0 / shortest))
+        vectors = np.stack([own[places] for own, places in zip(waves, which, strict=True)])
+        step = [1.0 / (n * voxel) for n in shape]
+        rings, floors = np.rint(np.hypot(*vectors[:2]) / (SHELL * step[0])), np.rint(np.abs(vectors[2]) / (SHELL * step[2]))
+        shell = (rings * (floors.max() + 1.0) + floors).astype(np.int32)
+        order = np.argsort(shell, kind="stable")
+        ends = np.flatnonzero(np.diff(shell[order])) + 1
+        return cls(np.ravel_multi_index(at.T, extent), extent, shape, along, which, vectors, order, ends)
+
+    def strongest(self, sheet: _Sheet) -> Floats:
+        """The line that stands out most of its shell, waves per mm (3,)."""
+        power = self.power(sheet)[self.order]
+        shells = np.split(power, self.ends)
+        most = [float(shell.max()) / max(float(np.median(shell)), 1e-300) for shell in shells]
+        best = int(np.argmax(most))
+        first = self.ends[best - 1] if best else 0
+        return np.asarray(self.vectors[:, self.order[first + int(np.argmax(shells[best]))]])
+
+    def power(self, sheet: _Sheet) -> NDArray[np.float32]:
+        """By how much each line lowers the weighted square, (l,): in single precision, for all that is asked is which stands out."""
+        carried = (sheet.weight * sheet.left)[:, None] * sheet.points.normal
+        sums = [np.bincount(self.voxel, column, math.prod(self.extent)).reshape(self.extent) for column in carried.T]
+        plane = _transformed((sums[0] + 1j * sums[1]).astype(np.complex64), self.shape, self.along)
+        mirrored = np.conj(plane[tuple(-one for one in self.which)])
+        ahead, upwards = plane[self.which], _transformed(sums[2].astype(np.float32), self.shape, self.along)[self.which]
+        moment = np.stack([(ahead + mirrored) / 2, (ahead - mirrored) / 2j, upwards])
+        inverse = np.linalg.pinv(sheet.squares, rcond=SEEN).astype(np.float32)
+        return np.asarray(2 * np.real((np.conj(moment) * (inverse @ moment)).sum(axis=0)), dtype=np.float32)
 
 
-def _spectrum(sheet: _Sheet) -> tuple[Floats, Floats, list[float]]:
-    """The lines that are looked for: vectors (3, l), waves per mm; by how much each lowers the weighted square (l,); and their steps along x, y, z."""
-    points, radius = sheet.points, sheet.grid.gear.tip_radius
-    shortest = max(CELLS_PER_WAVE * sheet.grid.size, radius / WAVES_PER_RADIUS)
-    voxel = shortest / VOXELS_PER_WAVE
-    at = np.rint((points.position - points.position.min(axis=0)) / voxel).astype(np.int64)
-    shape = [fft.next_fast_len(2 * int(extent)) for extent in at.max(axis=0) + 1]
-    extent = at.max(axis=0) + 1
-    flat = np.ravel_multi_index(at.T, extent)
-    carried = (sheet.weight * sheet.left)[:, None] * points.normal
-    sums = [np.bincount(flat, column, math.prod(extent)).reshape(extent) for column in carried.T]
-    # As many lines to either side of 0 along each axis as the shortest wave has, less than half of all.
-    lines = [np.r_[: int(n / VOXELS_PER_WAVE) + 1, n - int(n / VOXELS_PER_WAVE) : n] for n in shape]
-    waves = [np.fft.fftfreq(n, voxel)[own] for n, own in zip(shape, lines, strict=True)]
-    ahead = waves[0][waves[0] >= 0.0]  # a wave and its mirror image are one
-    across = np.hypot(ahead[:, None], waves[1][None, :])
-    length = np.sqrt(across[:, :, None] ** 2 + waves[2] ** 2)
-    which = np.nonzero((length >= 1.0 / radius) & (length <= 1.0 / shortest))
-    plane, mirror = _transformed(sums[0] + 1j * sums[1], shape, lines), tuple(-one for one in which)
-    mirrored = np.conj(plane[mirror])
-    along = _transformed(sums[2], shape, lines)
-    moment = np.stack([(plane[which] + mirrored) / 2.0, (plane[which] - mirrored) / 2.0j, along[which]])
-    power = 2.0 * np.real((np.conj(moment) * (np.linalg.pinv(sheet.squares, rcond=SEEN) @ moment)).sum(axis=0))
-    vectors = np.stack([own[places] for own, places in zip(waves, which, strict=True)])
-    return vectors, np.asarray(power, dtype=np.float64), [1.0 / (n * voxel) for n in shape]
-
-
-def _transformed(values: NDArray[np.inexact], shape: list[int], lines: list[Ints]) -> NDArray[np.complex128]:
+def _transformed(values: NDArray[np.inexact], shape: list[int], lines: list[Ints]) -> NDArray[np.complexfloating]:
     """Some lines of the spectrum of values, which are 0 from them up to `shape`, along each axis; the last axis first: what is 0, and lines that nobody
     asks for, need no transform along the others."""
+    lines_of: NDArray[np.complexfloating] = values + 0j
     for axis in (2, 1, 0):
-        values = fft.fft(values, shape[axis], axis=axis).take(lines[axis], axis=axis)
-    return np.asarray(values, dtype=np.complex128)
+        lines_of = fft.fft(lines_of, shape[axis], axis=axis).take(lines[axis], axis=axis)
+    return lines_of

@@ -177,7 +177,10 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
 
     Points lie evenly in L²; the mean over a column of sliding wear, a straight line over 1 / L, is its value midway between the column's edges.
     """
-    turn = depth[..., grid.fillet :] / grid.gear.normal_lever
+    some = depth[..., grid.fillet :].any(axis=-1)
+    turn = (
+        depth[some][:, grid.fillet :] / grid.gear.normal_lever
+    )  # what is worn nowhere turns nowhere: half of all rows, as a rule
     roll, edges = grid.rolls(parts), grid.roll_edges
     centres = 0.5 * (edges[1:] + edges[:-1])
     low = _parabola(turn[..., :3], centres[:3], float(roll[0]))
@@ -185,7 +188,10 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
     values = np.concatenate([low[..., None], turn, high[..., None]], axis=-1)
     place = np.concatenate([roll[:1], centres, roll[-1:]])
     way = grid.gear.orientation
-    return np.asarray(PchipInterpolator(way * place, values, axis=-1)(way * roll), dtype=np.float64)
+    turned = np.zeros((*some.shape, len(roll)))
+    if some.any():
+        turned[some] = PchipInterpolator(way * place, values, axis=-1)(way * roll)
+    return turned
 
 
 def _fillet_turn(grid: CellGrid) -> Floats:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from gearwear.arrays import Floats, Ints
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
-from gearwear.design.side import Side
 from gearwear.design.twist import segments, turn_at
 from gearwear.errors import InputError
 
@@ -18,6 +18,8 @@ ROOT_STEPS = 2
 """Straight steps across half a tip land and half a bottom land; the same on both solids, so they cancel."""
 SLIVER_VOLUME = 1e-4
 """mm³; less is rounding."""
+FEWEST_IN_STRIPS = 4
+"""Points of an outline side by side from which on strips between them are fewer triangles."""
 FILM_THICKNESS, MAX_LAYERS = 1e-4, 20
 """mm taken off where missing metal would touch itself, 25 times what single precision resolves; how often that is looked for."""
 
@@ -292,22 +294,33 @@ def nominal_like(profiles: ToothProfiles) -> ToothProfiles:
     return nominal_profiles(profiles.gear, profiles.radius, profiles.z)
 
 
-def tooth_triangles(profiles: ToothProfiles, tooth: int, straight: Side | None = None) -> Triangles:
-    """Watertight triangles of one external tooth, cut off straight from root to root; the flank of the side `straight`, where one is given, in
-    strips from end to end."""
-    one = replace(profiles, half_angle=profiles.half_angle[tooth : tooth + 1])
-    nodes = len(profiles.radius)
-    outline = _turned(outlines(one)[:, : 2 * nodes + 2 * TIP_STEPS - 1], tooth * profiles.gear.pitch_angle)
+def tooth_triangles(profiles: ToothProfiles, tooth: int, straight: Sequence[slice] = ()) -> Triangles:
+    """Watertight triangles of one external tooth, cut off straight from root to root; between the points of its outline in each of `straight`, which
+    are the same in all slices, in strips from end to end."""
+    outline = tooth_outlines(profiles, tooth)
     slices, around = outline.shape[:2]
-    cap = _tooth_cap(nodes)
+    cap = _tooth_cap(len(profiles.radius))
     walls = _walls(around, np.arange(slices - 1))
-    if straight is not None:
-        first = 0 if straight is Side.RIGHT else around - nodes
-        column = walls[:, 0] % around
-        walls = np.vstack([walls[(column < first) | (column > first + nodes - 2)], _strips(around, slices, first, nodes)])
-    faces = np.vstack([walls, cap[:, ::-1], cap + (slices - 1) * around])
+    column, strips = walls[:, 0] % around, []
+    kept = np.ones(len(walls), dtype=np.bool_)
+    for run in straight:
+        kept &= (column < run.start) | (column > run.stop - 2)
+        strips.append(_strips(around, slices, run.start, run.stop - run.start))
+    faces = np.vstack([walls[kept], *strips, cap[:, ::-1], cap + (slices - 1) * around])
     used, corner = np.unique(faces, return_inverse=True)
     return Triangles(_stacked(outline, profiles.z)[used], corner.reshape(-1, 3).astype(np.int64))
+
+
+def tooth_outlines(profiles: ToothProfiles, tooth: int) -> Floats:
+    """Outline of one tooth in every slice from its right root over the tip to its left root, (slices, points, 2) mm."""
+    one = replace(profiles, half_angle=profiles.half_angle[tooth : tooth + 1])
+    return _turned(outlines(one)[:, : 2 * len(profiles.radius) + 2 * TIP_STEPS - 1], tooth * profiles.gear.pitch_angle)
+
+
+def _runs(points: Bools) -> list[slice]:
+    """Runs of `points` (n,) that are long enough for strips."""
+    edges = np.flatnonzero(np.diff(points.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+    return [slice(first, stop) for first, stop in edges.tolist() if stop - first >= FEWEST_IN_STRIPS]
 
 
 def _strips(around: int, slices: int, first: int, nodes: int) -> Ints:
@@ -327,18 +340,24 @@ def _strips(around: int, slices: int, first: int, nodes: int) -> Ints:
 
 def worn_volume(worn: ToothProfiles, seen: tuple[float, float] = (0.0, 0.0)) -> list[Triangles]:
     """Nominal minus worn gear; as `worn_bodies`, tooth by tooth where what is missing hangs together over no bottom land: a tooth's triangles take a
-    small part of the room of a gear's, and of a spur tooth's side that has lost nothing a few strips do."""
+    small part of the room of a gear's, and of a spur tooth a few strips do where it has lost nothing, or lost something, from end to end."""
     nominal = nominal_like(worn)
     apart = not worn.gear.spec.internal and worn.gear.spec.gap == 0.0
     if not apart or (worn.half_angle[..., 0] != nominal.half_angle[..., 0]).any():
         return worn_bodies(gear_triangles(nominal), gear_triangles(worn), seen)
-    lost = (worn.half_angle != nominal.half_angle).any(axis=(2, 3))
     bodies = list[Triangles]()
-    for tooth in np.flatnonzero(lost.any(axis=1)).tolist():
-        straight = next((side for side in Side if worn.gear.twist == 0.0 and not lost[tooth, side.index]), None)
-        as_new, now = (tooth_triangles(profiles, tooth, straight) for profiles in (nominal, worn))
-        bodies += worn_bodies(as_new, now, seen)
+    for tooth in np.flatnonzero((worn.half_angle != nominal.half_angle).any(axis=(1, 2, 3))).tolist():
+        same, passed = _from_end_to_end(nominal, worn, tooth)
+        as_new, now = (tooth_triangles(profiles, tooth, same) for profiles in (nominal, worn))
+        bodies += worn_bodies(tooth_triangles(nominal, tooth, same + passed), _not_touching(as_new, now), seen)
     return sorted(bodies, key=lambda body: -body.volume)
+
+
+def _from_end_to_end(nominal: ToothProfiles, worn: ToothProfiles, tooth: int) -> tuple[list[slice], list[slice]]:
+    """Runs of points of a tooth's outline that are the same in all slices as new: those that lost nothing in any, and those that lost something in all."""
+    as_new, now = (tooth_outlines(profiles, tooth) for profiles in (nominal, worn))
+    straight, off = (as_new == as_new[:1]).all(axis=(0, 2)), np.abs(now - as_new).max(axis=2)
+    return _runs(straight & (off == 0.0).all(axis=0)), _runs(straight & (off >= FILM_THICKNESS).all(axis=0))
 
 
 def worn_bodies(nominal: Triangles, worn: Triangles, seen: tuple[float, float] = (0.0, 0.0)) -> list[Triangles]:

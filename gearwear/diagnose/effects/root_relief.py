@@ -46,7 +46,7 @@ class RootRelief(CatalogueEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         form = context.gear.form_roll
-        share = np.maximum((shape[0] - np.nan_to_num(points.roll)) / (shape[0] - form), 0.0)
+        share = np.fmax((shape[0] - points.roll) / (shape[0] - form), 0.0)  # nan is no number to `fmax`
         return np.where(on_flank(points), of_transverse(-share, context.gear), 0.0)[:, None]
 
 

@@ -47,7 +47,7 @@ class TipRelief(ReliefEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         tip, start = context.gear.tip_roll, shape[0]
-        share = np.maximum((np.nan_to_num(points.roll) - start) / (tip - start), 0.0) ** self.exponent(shape)
+        share = np.fmax((points.roll - start) / (tip - start), 0.0) ** self.exponent(shape)  # nan is no number to `fmax`
         return np.where(on_flank(points), of_transverse(-share, context.gear), 0.0)[:, None]
 
 

@@ -25,6 +25,8 @@ _RELATIONS = (
 )
 _STAMP = (2000, 1, 1, 0, 0, 0)
 """The same bytes on every run."""
+LEVEL = 4
+"""Of compression: a third of the usual one's time, for a twentieth more bytes."""
 AT_ONCE = 1 << 15
 """Triangles that are worked out before they are written: those of all of a large gear take more room than its scan."""
 
@@ -83,4 +85,4 @@ def write_3mf(path: Path, bodies: Sequence[Triangles], names: Sequence[str]) -> 
         for member, text in (("[Content_Types].xml", _CONTENT_TYPES), ("_rels/.rels", _RELATIONS), ("3D/3dmodel.model", model)):
             info = zipfile.ZipInfo(member, _STAMP)
             info.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(info, text)
+            archive.writestr(info, text, compresslevel=LEVEL)
