@@ -18,6 +18,8 @@ from gearwear.diagnose.effects.base import MADE, MEASURED, Context, Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.pose import motion_columns
+from gearwear.placing.side_maps import make_side_maps
+from gearwear.wear.regions import Wear
 
 UNEXPLAINED = "unexplained"
 """Name under which structure without a name stands among the causes of a change."""
@@ -144,21 +146,24 @@ class SideFields:
     unsure: tuple[Floats, ...] = ()
 
 
-def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideFields:
-    """The effects on the tooth sides of the design; nothing where there is none."""
+def side_fields(measured: MeasuredGear, effects: Iterable[PutBack], wear: Wear | None = None) -> SideFields:
+    """The effects on the tooth sides of the design, and with the `wear` found the levels that it counts from; nothing where there is none."""
     loop, grid = measured.loop, measured.cells.grid
     points = side_points(grid)
     shape = grid.side_shape
     made, raw, taken, unsure = np.zeros(shape), np.zeros(shape), dict[str, Floats](), list[Floats]()
-    if loop is None or not (loop.effects or loop.patterns):
+    if loop is None:
         return SideFields(made, taken, raw)
+    if wear is not None:
+        made = made + on_flanks(_counted_from(measured, wear), grid)
+    if not (loop.effects or loop.patterns or loop.form):
+        return SideFields(made, taken, raw)
+    made = made + loop.deviation(points, MADE).reshape(shape)  # with what is no finding: the wear does not hold it either
     for effect in effects:
         alone = effect.alone(points).reshape(shape)
         shown = alone if effect.kind in MADE else effect.shown(points).reshape(shape)
         unsure.append(effect.relative_std * shown)
-        if effect.kind in MADE:
-            made = made + alone
-        elif effect.kind in MEASURED:
+        if effect.kind in MEASURED:
             raw = raw + alone
             taken[effect.name] = taken.get(effect.name, 0.0) + shown
     if loop.patterns:
@@ -167,6 +172,45 @@ def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideField
     if not about_datum(loop):
         raw = raw + (motion_columns(points.position, points.normal) @ loop.motion).reshape(shape)
     return SideFields(made, taken, raw, tuple(unsure))
+
+
+def _counted_from(measured: MeasuredGear, wear: Wear) -> Floats:
+    """How high flanks stood as made, (teeth, 2) mm, from where the wear is counted, beyond effects and patterns: what their teeth were told to be thicker by,
+    and what stands proud of the design."""
+    loop, grid = measured.loop, measured.cells.grid
+    levels = flank_levels(make_side_maps(measured.as_made).deviation - wear.side_maps.deviation, grid.fillet)
+    if loop is None or loop.untold is None:
+        return levels
+    return levels + loop.untold.level
+
+
+def flank_levels(heights: Floats, fillet: int) -> Floats:
+    """Median of each flank, (teeth, 2), of heights (teeth, 2, rows, fillet + flank); 0 where none is known."""
+    flank = heights[..., fillet:].reshape(*heights.shape[:2], -1)
+    known = np.isfinite(flank).any(axis=2)
+    levels = np.zeros(known.shape)
+    levels[known] = np.nanmedian(flank[known], axis=1)
+    return levels
+
+
+def on_flanks(levels: Floats, grid: CellGrid) -> Floats:
+    """Levels of flanks, (teeth, 2), all over them: (teeth, 2, rows, fillet + flank)."""
+    field = np.zeros(grid.side_shape)
+    field[..., grid.fillet :] = levels[..., None, None]
+    return field
+
+
+def pattern_fields(measured: MeasuredGear) -> tuple[Floats, Floats]:
+    """The patterns that no effect explains on the tooth sides, (teeth, 2, rows, fillet + flank) mm: those that are known under wear as well, and those that
+    are drawn on from beside it."""
+    loop, grid = measured.loop, measured.cells.grid
+    patterns = () if loop is None else loop.patterns
+
+    def summed(known: bool) -> Floats:
+        fields = [np.nan_to_num(pattern.field) for pattern in patterns if pattern.known_everywhere is known]
+        return grid.sides(np.sum([np.zeros(grid.count), *fields], axis=0))
+
+    return summed(True), summed(False)
 
 
 def _pattern(loop: Loop) -> Floats:

@@ -66,6 +66,7 @@ def notes_of(
         *take_each_other_back(measured.loop),
         *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn) else ()),
         *worn_notes(measured, wear, unworn),
+        *contact_note(pair),
         *((seam_note(seam),) if seam is not None else ()),
         *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
         *edge_notes(wear),
@@ -107,6 +108,15 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     else:
         borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them", others)
     return _with_datum(measured, replace(datum, borne_out="" if said else borne_out))
+
+
+def contact_note(pair: PairResult | None) -> tuple[str, ...]:
+    """What leaves the contact open, a sentence; none where nothing does."""
+    if pair is None or pair.limits is None:
+        return ()
+    return (
+        f"backlash, transmission error and contact ratio lie within limits beyond their ±, as is open: {'; '.join(pair.limits.why)}",
+    )
 
 
 def seam_note(seam: DriftSeam) -> str:

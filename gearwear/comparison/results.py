@@ -10,7 +10,9 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
+from gearwear.comparison.contact_readings import ContactLimits
 from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.open_sizes import size_limits
 from gearwear.comparison.open_volume import OpenVolume
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.comparison.weighed import WeighedLoss, weighed_loss
@@ -144,6 +146,8 @@ class PairResult:
         The same flanks under the design's load; None where it states none.
     running : SecondLoop or str
         How the pair ran, by the pattern of the wear; or why that was not looked for.
+    limits : ContactLimits or None
+        Within what limits the contact's numbers lie where more is open of them than their standard deviations; None where nothing is.
     """
 
     design: ExactMeshing
@@ -155,6 +159,7 @@ class PairResult:
     law: WearStudy | None
     loaded: LoadedStudy | None = None
     running: SecondLoop | str = ""
+    limits: ContactLimits | None = None
 
     @property
     def second_loop(self) -> SecondLoop | None:
@@ -194,8 +199,45 @@ class PairResult:
     @property
     def path_length(self) -> float:
         """Length of contact of the worn flanks along the line of action, mm: contact ratio, less the overlap's, times base pitch."""
+        return self._path_of(self.contact_ratio)
+
+    @property
+    def open_backlash(self) -> tuple[tuple[Backlash, Backlash], tuple[Backlash, Backlash]] | None:
+        """Lowest and highest of `greatest_backlash`, and of `least_backlash`, where they are open."""
+        if self.limits is None:
+            return None
+        low, high = self.limits.low, self.limits.high
+        greatest = self._backlash(low.backlash_greatest), self._backlash(high.backlash_greatest)
+        return greatest, (self._backlash(low.backlash_least), self._backlash(high.backlash_least))
+
+    @property
+    def open_greatest(self) -> tuple[float, float] | None:
+        """Lowest and highest of the greatest circumferential backlash, mm, where it is open."""
+        open_ = self.open_backlash
+        return None if open_ is None else (open_[0][0].circumferential, open_[0][1].circumferential)
+
+    @property
+    def open_error_um(self) -> tuple[float, float] | None:
+        """Lowest and highest of the transmission error, peak to peak, µm, where it is open."""
+        if self.limits is None:
+            return None
+        return 1e3 * self.limits.low.transmission_error, 1e3 * self.limits.high.transmission_error
+
+    @property
+    def open_ratio(self) -> tuple[float, float] | None:
+        """Lowest and highest of `contact_ratio`, where it is open."""
+        return None if self.limits is None else (self.limits.low.contact_ratio, self.limits.high.contact_ratio)
+
+    @property
+    def open_path(self) -> tuple[float, float] | None:
+        """Lowest and highest of `path_length`, mm, where it is open."""
+        if self.limits is None:
+            return None
+        return self._path_of(self.limits.low.contact_ratio), self._path_of(self.limits.high.contact_ratio)
+
+    def _path_of(self, contact_ratio: float) -> float:
         path = self.design.path
-        return max(self.contact_ratio - path.overlap_ratio, 0.0) * path.base_pitch
+        return max(contact_ratio - path.overlap_ratio, 0.0) * path.base_pitch
 
     def _backlash(self, normal: float) -> Backlash:
         return backlash_from_normal(self.contact.driver, self.contact.driven, self.design.centre_distance, normal)
@@ -309,6 +351,10 @@ class Results(Card):
     def effects(self) -> tuple[FoundEffect, ...]:
         """Effects found besides wear, in the order added."""
         return () if self.loop is None else tuple(effect for effect in self.loop.effects if effect.kind is not Kind.WEAR)
+
+    def open_sizes(self, effect: FoundEffect) -> dict[str, tuple[float, float]]:
+        """Within what limits sizes of an effect lie where it hangs on which sides are worn throughout; see `size_limits`."""
+        return {} if self.loop is None or self.before_files else size_limits(self.loop, effect)
 
     @property
     def rms_left(self) -> float:

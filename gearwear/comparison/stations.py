@@ -14,6 +14,7 @@ import numpy as np
 from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
 from gearwear.comparison.closing import measure
 from gearwear.comparison.consequences import Change, meshing_changes, wear_changes
+from gearwear.comparison.contact_readings import ContactNumbers, OtherReadings, contact_limits, other_readings
 from gearwear.comparison.contributions import PutBack, SideFields, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.comparison.notes import in_accord, notes_of
@@ -136,11 +137,11 @@ def compare(
         law = None if met is None else met.law
         laws = fit_laws(wear, points, scanned.as_made, measured.context, measured.loop, scanned.scatter, law)
         progress("thickness and inspection")
-        (solids, boolean), (thickness, thicker), changes, undecided, *beside_contact = others()
+        (solids, boolean), (thickness, thicker), changes, (undecided, read), *beside_contact = others()
     inspected, remarks = (*before_contact, *beside_contact)
     most = thickness.below_drawing()
     thinner = None if most is None else SectionLoss(most.value, most.tooth, most.at_z)
-    pair = None if met is None else _pair(design, met, thickness, thinner)
+    pair = None if met is None else _pair(design, met, thickness, thinner, read)
     measured = in_accord(measured, wear, scanned.unworn is not None)
     return Results(
         measured=measured,
@@ -271,7 +272,7 @@ def _apart_from_contact(scanned: Scanned, lost: Lost) -> list[Callable[[], Any]]
         else partial(
             wear_changes, measured, left_in, scanned.as_made, scanned.scatter, quick, lost.wear, lost.before_loop, unworn
         ),
-        partial(_undecided, measured.undecided if unworn is None else ()),
+        partial(_otherwise, scanned, lost),
     ]
 
 
@@ -286,7 +287,7 @@ class Run:
     def of(cls, scanned: Scanned, lost: Lost) -> Run:
         """With the worn surface, less what is broken off it."""
         measured, grid, surface = scanned.measured, scanned.measured.cells.grid, lost.surface
-        fields = side_fields(measured, lost.effects)
+        fields = side_fields(measured, lost.effects, lost.wear if scanned.unworn is None else None)
         there = WornSurface(*(without_broken(depths, measured.broken, grid) for depths in (surface.depth, surface.draws)))
         return cls(RunningGear.of(grid, there, lost.wear.side_maps.area, fields), fields)
 
@@ -324,10 +325,15 @@ def _against_mate(
     return Met(contact, spread, loaded, law, ran, changes)
 
 
-def _undecided(gears: Sequence[MeasuredGear]) -> tuple[tuple[float, float], ...]:
-    """Worn volume and its standard deviation with other sides worn throughout, mm³."""
+def _otherwise(scanned: Scanned, lost: Lost) -> tuple[tuple[tuple[float, float], ...], OtherReadings]:
+    """Worn volume and its standard deviation with other sides worn throughout, mm³, and what the scan leaves open of the contact."""
+    measured, gears = scanned.measured, scanned.measured.undecided if scanned.unworn is None else ()
     wears = [find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone) for gear in gears]
-    return tuple((wear.volume, wear.volume_std) for wear in wears)
+    read, design = OtherReadings(), measured.design
+    if design.pair is not None:
+        path = exact_meshing(design.gears["pinion"], design.gears["gear"], design.centre_distance).path
+        read = other_readings(design, measured, lost.wear, list(zip(gears, wears, strict=True)), path)
+    return tuple((wear.volume, wear.volume_std) for wear in wears), read
 
 
 def _remarks(measured: MeasuredGear) -> tuple[str, ...]:
@@ -406,18 +412,20 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     return PlainBoolean(removed, gear.volume - user.volume, pieces)
 
 
-def _pair(design: Design, met: Met, thickness: SectionThickness, thinner: SectionLoss | None) -> PairResult:
+def _pair(design: Design, met: Met, thickness: SectionThickness, thinner: SectionLoss | None, read: OtherReadings) -> PairResult:
     pair, contact = design.pair, met.contact
     assert pair is not None
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
     worst = max([0.0, *(tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen)])
     play = contact.backlash_min.value, contact.backlash_max.value
     ring = gear.spec.internal
+    exact = exact_meshing(pinion, gear, centre)
     return PairResult(
-        design=exact_meshing(pinion, gear, centre),
+        design=exact,
         published=None if ring else published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),
         contact=contact,
         spread=met.spread,
+        limits=contact_limits(ContactNumbers.of(contact, exact.path), read, met.spread),
         shafts=None if thinner is None or not thinner.value > 0.0 or ring else take_up(pinion, gear, centre, play, thinner.value),
         drive_side=met.law.side,
         law=met.law,

@@ -14,7 +14,8 @@ from gearwear.comparison.contributions import PutBack, band_points
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.comparison.seam import with_seam
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import MADE
+from gearwear.diagnose.effects.base import MADE, MEASURED
+from gearwear.diagnose.found import Loop
 from gearwear.wear.flank_arcs import worn_arcs
 from gearwear.wear.hollows import find_hollows, pitted
 from gearwear.wear.regions import Wear
@@ -32,6 +33,8 @@ def thickness_and_changes(
     if unworn is not None:
         made_arc = corrected_thickness(unworn, unworn.sections).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
+    else:
+        thickness = _with_other_sides(measured, thickness)
     thickness = with_seam(measured, thickness)
     if effects is None:
         return thickness, ()
@@ -63,6 +66,23 @@ def corrected_thickness(measured: MeasuredGear, sections: SectionSums) -> Sectio
         result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE)) + untold).made_with(arc(loop.surely_made) + untold),
         otherwise=(sum(min(change, 0.0) for change in other), sum(max(change, 0.0) for change in other)),
     )  # fmt: skip
+
+
+def _with_other_sides(measured: MeasuredGear, thickness: SectionThickness) -> SectionThickness:
+    """The same measurement with what teeth are on average were other sides worn throughout that the scan does not exclude: as much thinner as the scanner then
+    added more. One of the readings is true."""
+    loop = measured.loop
+    if loop is None or not loop.others:
+        return thickness
+    flanks = band_points(measured.gear, thickness.z)
+
+    def added(reading: Loop) -> float:
+        both = np.sum([reading.deviation(flank, MEASURED) for flank in flanks], axis=0)
+        return float(measured.gear.arc_per_depth * both.mean())
+
+    changes = [added(loop) - added(other) for other in loop.others]
+    less, more = thickness.otherwise
+    return replace(thickness, otherwise=(less + min(0.0, *changes), more + max(0.0, *changes)))
 
 
 def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear, sections: SectionSums) -> SectionThickness:

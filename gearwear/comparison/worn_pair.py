@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -88,10 +88,8 @@ class RunningGear:
     def against_mate(self, design: Design, measured: MeasuredGear, side: Side) -> tuple[ContactResult, ContactSpread]:
         """Rigid contact over one revolution of the scanned gear, `side` of the scanned gear carrying; its variants are those of `put_back`."""
         in_order = beside_mate(design, measured)
-        contact = mesh_contact(
-            *in_order(self.present), design.centre_distance, facing(measured.gear, side), positions_per_pitch=POSITIONS, cycle=_cycle(measured),
-            variants=list(map(in_order, (*self.put_back, *self.drawn, *self.drawn_again))),
-        )  # fmt: skip
+        variants = list(map(in_order, (*self.put_back, *self.drawn, *self.drawn_again)))
+        contact = mesh_of_scanned(design, measured, in_order(self.present), side, variants)
         first, again = len(self.put_back), len(self.put_back) + len(self.drawn)
         spread = contact_spread(contact.variants[first:again], contact.variants[again:], sum(measured.level_std))
         return replace(contact, variants=contact.variants[:first]), spread
@@ -114,6 +112,19 @@ class RunningGear:
             )
         except InputError:
             return None
+
+
+def mesh_of_scanned(
+    design: Design,
+    measured: MeasuredGear,
+    pair: tuple[ToothProfiles, ToothProfiles],
+    side: Side,
+    variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
+) -> ContactResult:
+    """Rigid contact of a pair that `beside_mate` put in order, over one revolution of the scanned gear, `side` of which carries."""
+    return mesh_contact(
+        *pair, design.centre_distance, facing(measured.gear, side), positions_per_pitch=POSITIONS, cycle=_cycle(measured), variants=variants
+    )  # fmt: skip
 
 
 def _cycle(measured: MeasuredGear) -> Cycle:

@@ -143,14 +143,19 @@ def worn_profiles(nodes: ProfileNodes, depth: Floats, added: Floats | None = Non
     if grid.gear.undercut:
         fillet = np.maximum(fillet - np.maximum(flank[..., :1, None] - nodes.beyond_cells, 0.0).mean(axis=-1), 0.0)
         cut = np.maximum(flank[..., :1] - nodes.beyond_nodes, 0.0)
-    turn = np.concatenate([np.maximum(_on_fillet(grid, fillet, below), cut), flank], axis=-1)
-    if added is not None:
+    turn = _over_face(grid, np.concatenate([np.maximum(_on_fillet(grid, fillet, below), cut), flank], axis=-1))
+    if added is not None:  # by itself: where wear ends before the face does it leaves the gear as made, and not as drawn
         raised = _on_fillet(grid, added[..., : grid.fillet] * nodes.fillet_turn, below)
-        turn -= np.concatenate([raised, _flank_turn(grid, added, parts)], axis=-1)
-    turn = np.concatenate([_to_ends(grid, turn[:, :, rows], _row_heights(grid, rows, part)) for rows, part in grid.zones], axis=2)
+        turn = turn - _over_face(grid, np.concatenate([raised, _flank_turn(grid, added, parts)], axis=-1))
     half_angle = _kept_apart(nodes.half_angle - turn)
     rising = slice(None, None, grid.gear.orientation)
     return ToothProfiles(grid.gear, radius[rising], nodes.heights, np.ascontiguousarray(half_angle[..., rising]))
+
+
+def _over_face(grid: CellGrid, turn: Floats) -> Floats:
+    """Turns of all rows at the heights of the nodes."""
+    parts = [_to_ends(grid, turn[:, :, rows], _row_heights(grid, rows, part)) for rows, part in grid.zones]
+    return np.concatenate(parts, axis=2)
 
 
 def _to_ends(grid: CellGrid, turn: Floats, rows: Floats) -> Floats:

@@ -13,7 +13,7 @@ from gearwear.design.modification import AMOUNTS
 from gearwear.design.pair import Design
 from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence, significant, with_std
 from gearwear.design.side import Side
-from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.diagnose.found import Loop
 from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.halves import Half
@@ -30,6 +30,7 @@ from gearwear.report.page import pictures
 from gearwear.report.page.blocks import Block, Columns, Facts, Heading, Items, Paragraph, Section, Table, blocks
 from gearwear.report.records.comparison import made_by
 from gearwear.report.words.consequences import HEAD, TEXT, change_rows, said_changes
+from gearwear.report.words.contact import between, reaches_beyond
 from gearwear.report.words.effects import fitted_words, found_words
 from gearwear.report.words.loaded import HEAD as HEAD_LOADED
 from gearwear.report.words.loaded import TEXT as TEXT_LOADED
@@ -123,7 +124,7 @@ def loop(results: Results, arrays: ReportArrays) -> Section:
         changes = said_changes(results)
         body = blocks(
             lead,
-            [pictures.waterfall(closed, effects), *_effects(effects, closed)] if effects else known,
+            [pictures.waterfall(closed, effects), *_effects(results, closed)] if effects else known,
             _patterns(closed),
             [Heading("What leaving them in would have cost"), Paragraph(TEXT), Table(HEAD, change_rows(changes), words=2)]
             if changes else None,
@@ -132,7 +133,9 @@ def loop(results: Results, arrays: ReportArrays) -> Section:
     return Section("loop", "Closed loop", "Closed loop: what else is in the scan", body)
 
 
-def _effects(effects: Sequence[FoundEffect], closed: Loop) -> list[Block]:
+def _effects(results: Results, closed: Loop) -> list[Block]:
+    effects = results.effects
+
     def span(first: float, last: float) -> str:
         return f"{significant(1e3 * first)} → {significant(1e3 * last)}" if math.isfinite(last) else MISSING
 
@@ -141,7 +144,7 @@ def _effects(effects: Sequence[FoundEffect], closed: Loop) -> list[Block]:
         p = effect.evidence.p_value
         evidence = f"F = {significant(effect.evidence.statistic)}, n_eff = {number(effect.evidence.effective_number, 0)}"
         rows.append((
-            sentence(found_words(effect)).rstrip("."), effect.kind.value, listed(map(effect_title, effect.alternatives), "or") or MISSING,
+            sentence(found_words(effect, results.open_sizes(effect))).rstrip("."), effect.kind.value, listed(map(effect_title, effect.alternatives), "or") or MISSING,
             f"{evidence}, {'p < 1e−300' if p == 0.0 else f'p = {significant(p, 2)}'}",
             span(effect.rms_before, effect.rms_after), span(effect.held_out_before, effect.held_out_after),
         ))  # fmt: skip
@@ -223,6 +226,7 @@ def meshing(results: Results, arrays: ReportArrays) -> Section:
     return Section("meshing", link, title, blocks(
         Paragraph(housing),
         Table(("", "design", "worn", "change"), _meshing_rows(pair)),
+        None if pair.limits is None else Paragraph(f"In brackets between what a number lies (of backlash the greatest), as is open: {'; '.join(pair.limits.why)}."),
         None if pair.shafts is None else Paragraph(take_up_words(pair.shafts)),
         None if pair.loaded is None else _loaded(pair.loaded),
         None if pair.law is None else _wear_law(pair.law, results.wear.regions),
@@ -277,21 +281,32 @@ def _meshing_rows(pair: PairResult) -> list[tuple[str, str, str, str]]:
     if exact.backlash.axial is not None:
         plays += (("axial backlash, mm", lambda play: play.axial or 0.0),)
     te_std = 0.0 if pair.spread is None else 1e3 * pair.spread.transmission_error
+    open_ = None if pair.open_backlash is None else pair.open_backlash[0]
     return [
         _compared("centre distance, mm", exact.centre_distance, exact.centre_distance, 3),
         _compared("working pressure angle, °", angle, angle, 3),
-        *(_compared(name, of(exact.backlash), of(most), 4, of(least), 0.0 if std is None else of(std)) for name, of in plays),
-        _compared("path of contact, mm", exact.path.length, pair.path_length, 3),
-        _compared("contact ratio", exact.path.total_contact_ratio, pair.contact_ratio, 3),
-        _compared("transmission error, peak to peak, µm", 0.0, pair.contact.peak_to_peak_um, 1, std=te_std),
-    ]
+        *(
+            _compared(
+                name, of(exact.backlash), of(most), 4, of(least), 0.0 if std is None else of(std),
+                None if open_ is None else (of(open_[0]), of(open_[1])),
+            )
+            for name, of in plays
+        ),
+        _compared("path of contact, mm", exact.path.length, pair.path_length, 3, limits=pair.open_path),
+        _compared("contact ratio", exact.path.total_contact_ratio, pair.contact_ratio, 3, limits=pair.open_ratio),
+        _compared(
+            "transmission error, peak to peak, µm", 0.0, pair.contact.peak_to_peak_um, 1, std=te_std, limits=pair.open_error_um
+        ),
+    ]  # fmt: skip
 
 
 def _compared(
-    name: str, design: float, worn: float, digits: int, least: float | None = None, std: float = 0.0
-) -> tuple[str, str, str, str]:
+    name: str, design: float, worn: float, digits: int, least: float | None = None, std: float = 0.0,
+    limits: tuple[float, float] | None = None,
+) -> tuple[str, str, str, str]:  # fmt: skip
     shown = number(worn, digits) if least is None else f"{number(least, digits)} … {number(worn, digits)}"
     shown += f" ± {number(std, digits)}" if round(std, digits) > 0.0 else ""
+    shown += f" ({between(limits, digits)})" if limits is not None and reaches_beyond(worn, std, limits, digits) else ""
     change = number(worn - design, digits)
     return (
         name,

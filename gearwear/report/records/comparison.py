@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import numpy as np
 
 import gearwear
 from gearwear.comparison.consequences import Change
-from gearwear.comparison.open_volume import OpenVolume
+from gearwear.comparison.open_volume import Open, OpenVolume
 from gearwear.comparison.results import PairResult, Results
 from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.gear import Gear
@@ -271,7 +271,7 @@ def _loop(results: Results) -> Json:
         "texture_um": 1e3 * math.sqrt(loop.covariance.texture),
         "before": {"rms_um": 1e3 * loop.rms_before, "heldout_rms_um": 1e3 * loop.held_out_before},
         "after": {"rms_um": 1e3 * loop.rms_after, "heldout_rms_um": 1e3 * loop.held_out_after},
-        "effects": [effect_record(effect) for effect in results.effects],
+        "effects": [effect_record(effect, results.open_sizes(effect)) for effect in results.effects],
         "form": [effect_record(level) for level in loop.form],
         "undecided": [[str(side) for side in sorted(sides, reverse=True)] for sides in loop.undecided],
         "correlations": [
@@ -300,13 +300,15 @@ def change_records(changes: Iterable[Change]) -> Json:
     }
 
 
-def effect_record(effect: FoundEffect) -> Json:
-    """One entry of `closed_loop` → `effects`."""
-    evidence = effect.evidence
+def effect_record(effect: FoundEffect, limits: Mapping[str, tuple[float, float]] | None = None) -> Json:
+    """One entry of `closed_loop` → `effects`; with limits beside sizes of which more is open than their standard deviation, by name."""
+    evidence, parameters = effect.evidence, parameters_record(effect.parameters)
+    for name, (low, high) in (limits or {}).items():
+        parameters[name] |= {"low": low, "high": high, "range_from": str(Open.SIDES)}
     return {
         "name": effect.name,
         "kind": effect.kind.value,
-        "parameters": parameters_record(effect.parameters),
+        "parameters": parameters,
         "alternatives": list(effect.alternatives),
         "tells_apart": effect.candidate.effect.tells_apart if effect.alternatives else None,
         "rms_before_um": 1e3 * effect.rms_before,
@@ -493,11 +495,30 @@ def _paper(paper: PublishedMeshing) -> Json:
     }
 
 
+def _contact_limits(pair: PairResult) -> Json:
+    """Limits beside the numbers of the contact, and why; nothing where they stand by themselves."""
+    limits, path = pair.limits, pair.open_path
+    if limits is None or path is None:
+        return {}
+    ends = (("low", limits.low, path[0]), ("high", limits.high, path[1]))
+    record: Json = {"range_from": "; ".join(limits.why)}
+    for end, numbers, length in ends:
+        record |= {
+            f"transmission_error_um_{end}": 1e3 * numbers.transmission_error,
+            f"contact_ratio_{end}": numbers.contact_ratio,
+            f"path_of_contact_mm_{end}": length,
+        }
+    return record
+
+
 def _meshing(pair: PairResult) -> Json:
     design, contact, spread = pair.design, pair.contact, pair.spread
     play = _backlash(pair.greatest_backlash) | _backlash(pair.least_backlash, "_min")
     for std, suffix in ((pair.greatest_backlash_std, "_std"), (pair.least_backlash_std, "_min_std")):
         play |= {} if std is None else _backlash(std, suffix)
+    if pair.open_backlash is not None:
+        for (low, high), least in zip(pair.open_backlash, ("", "_min"), strict=True):
+            play |= _backlash(low, f"{least}_low") | _backlash(high, f"{least}_high")
     report: Json = {
         "housing": "fixed at the design's centre distance",
         "paper": None if pair.published is None else _paper(pair.published),
@@ -527,6 +548,7 @@ def _meshing(pair: PairResult) -> Json:
             "backlash_max_at_deg": math.degrees(contact.backlash_max.rotation),
             "drive_flank": str(pair.drive_side),
             "mate": "nominal",
+            **_contact_limits(pair),
         },
     }
     if pair.loaded is not None:

@@ -139,7 +139,7 @@ def _found(results: Results, where: bool, correlated: bool, most: int, named: bo
     worn = bool(results.wear.regions)
     text = sentence(f"{'besides wear ' if worn else ''}no {'known ' if loop.patterns else ''}effect stands out")
     if effects:
-        said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:most]]
+        said = [found_words(effect, results.open_sizes(effect)) + or_words(effect.alternatives) for effect in effects[:most]]
         rest = effects[most:]
         more = (
             [effect_title(effect.name) + or_words(effect.alternatives) for effect in rest]

@@ -24,6 +24,7 @@ from gearwear.design.quantity import (
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.refusal import SeenRadii
+from gearwear.report.words.contact import between, reaches_beyond, why_open
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.lost import is_open, lost_words, may_be_none, open_words, size_words, where_lost, worn_so_thin
 from gearwear.report.words.numbers import effect_title, thickness_place, which_flanks
@@ -170,7 +171,7 @@ def loop_words(results: Results) -> str:
         return "No effect of measurement or manufacture was looked for: whatever differs from the design counts as it stands."
     said, beside = [], "besides wear " if results.wear.regions else ""
     if effects:
-        said.append(f"{beside}the scan shows {listed(found_words(effect) for effect in effects)}")
+        said.append(f"{beside}the scan shows {listed(found_words(effect, results.open_sizes(effect)) for effect in effects)}")
         for others in dict.fromkeys(effect.alternatives for effect in effects if effect.alternatives):
             alike = listed((effect_title(effect.name) for effect in effects if effect.alternatives == others), "or")
             said.append(f"the data cannot tell {alike} from {listed(map(effect_title, others), 'or')}")
@@ -369,21 +370,37 @@ def key_figures(results: Results) -> list[KeyFigure]:
 def _contact_figures(results: Results) -> list[KeyFigure]:
     pair = results.pair
     assert pair is not None
-    std = pair.greatest_backlash_std
-    play = known(pair.greatest_backlash.circumferential, 0.0 if std is None else std.circumferential, 3, "mm")
-    te_std = 0.0 if pair.spread is None else pair.spread.transmission_error
-    error = known(pair.contact.peak_to_peak_um, 1e3 * te_std, 1, "µm", 1e3 * LEAST_STD)
-    note = f"design {number(pair.design.backlash.circumferential, 3)}{SPACE}mm, circumferential"
+    std, te_std = pair.greatest_backlash_std, 0.0 if pair.spread is None else 1e3 * pair.spread.transmission_error
+    play_std = 0.0 if std is None else std.circumferential
     figures = [
-        KeyFigure("Backlash, greatest", play, note),
-        KeyFigure("Transmission error", error, "peak to peak over a revolution, unloaded"),
-    ]
+        _contact_figure(
+            results, "Backlash, greatest", (pair.greatest_backlash.circumferential, play_std, 3, "mm", LEAST_STD), pair.open_greatest,
+            f"design {number(pair.design.backlash.circumferential, 3)}{SPACE}mm, circumferential",
+        ),
+        _contact_figure(
+            results, "Transmission error", (pair.contact.peak_to_peak_um, te_std, 1, "µm", 1e3 * LEAST_STD), pair.open_error_um,
+            "peak to peak over a revolution, unloaded",
+        ),
+    ]  # fmt: skip
     if pair.loaded is not None:
         present, loaded_std = pair.loaded.present, pair.loaded.spread.std("transmission_error")
         value = known(1e3 * present.peak_to_peak, 1e3 * loaded_std, 1, "µm", 1e3 * LEAST_STD)
         note = f"at {significant(present.load_per_width)}{SPACE}N/mm; design {number(1e3 * pair.loaded.design.peak_to_peak, 1)}{SPACE}µm"
         figures.append(KeyFigure("The same under load", value, note))
     return figures
+
+
+def _contact_figure(
+    results: Results, name: str, told: tuple[float, float, int, str, float], limits: tuple[float, float] | None, note: str
+) -> KeyFigure:
+    """A number of the contact as `known` words it; within what it lies in its place where that is more."""
+    value, std, digits, unit, _ = told
+    if results.pair is None or limits is None or not reaches_beyond(value, std, limits, digits):
+        return KeyFigure(name, known(*told[:2], digits, unit, told[4]), note)
+    beside, shown = f"{between(limits, digits)} not excluded", known(*told[:2], digits, unit, told[4])
+    if max(value - limits[0], limits[1] - value) > LOPSIDED * std:
+        beside, shown = f"likeliest {number(value, digits)}", between(limits, digits, unit)
+    return KeyFigure(name, shown, f"{beside}; {why_open(results.pair)}; {note}")
 
 
 def thinnest_words(tooth: ThinnestTooth) -> str:
