@@ -115,7 +115,7 @@ def contact_note(pair: PairResult | None) -> tuple[str, ...]:
     if pair is None or pair.limits is None:
         return ()
     return (
-        f"backlash, transmission error and contact ratio lie within limits beyond their ±, as is open: {'; '.join(pair.limits.why)}",
+        f"backlash, transmission error and contact ratio have limits beyond their ±, by what the scan leaves open: {'; '.join(pair.limits.why)}",
     )
 
 

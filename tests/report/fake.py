@@ -14,6 +14,7 @@ import numpy as np
 import gearwear as gw
 from gearwear.arrays import Floats
 from gearwear.comparison.consequences import Change
+from gearwear.comparison.contact_readings import ContactLimits, ContactNumbers, ReadOtherwise
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
 from gearwear.design.gear import Gear
@@ -145,6 +146,12 @@ def changed(whole: Any, path: str, value: Any) -> Any:
     """A frozen bundle with one field, named by its path, replaced."""
     name, _, rest = path.partition(".")
     return replace(whole, **{name: changed(getattr(whole, name), rest, value) if rest else value})
+
+
+def open_contact() -> Results:
+    """`fake_results` with 0.1 to 1.7 mm of backlash and 1 to 1600 µm of transmission error."""
+    low, high = ContactNumbers(0.001, 0.1, 0.02, 1.1), ContactNumbers(1.6, 1.7, 1.6, 1.3)
+    return changed(fake_results(), "pair.limits", ContactLimits(low, high, (ReadOtherwise.SIDES, ReadOtherwise.PATTERN)))
 
 
 def fake_effect(

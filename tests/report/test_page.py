@@ -18,13 +18,14 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from PIL import Image
 
+from gearwear.comparison.contact_readings import ReadOtherwise
 from gearwear.design.quantity import with_std
 from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report import figures
 from gearwear.report.page import blocks, view
 from gearwear.report.page.view import page, write_html
-from tests.report.fake import bare_results, changed, fake_arrays, fake_results
+from tests.report.fake import bare_results, changed, fake_arrays, fake_results, open_contact
 
 SECTIONS = ["wear", "loop", "thickness", "meshing", "inspection", "paper", "registration", "scan", "doubts", "files"]
 FILES = ("report.json", "report.html", "worn_volume.stl")
@@ -193,6 +194,15 @@ def test_what_the_effects_would_have_cost_stands_at_the_loop(little):
 def test_correlations_stand_with_the_effects(full):
     shown = Reader(full).text
     assert "Correlations of their sizes" in shown and "coating, thickness scale, relative −0.42" in shown
+
+
+def test_what_is_open_of_the_contact_stands_beside_it_with_why(little):
+    text = Reader(page(open_contact(), little)).text.replace("\u202f", " ")
+    table = text.split("Meshing: design against worn", 1)[1].split("Published", 1)[0]
+    for row in ("(1.100 to 1.300)", "(1.0 to 1 600.0)"):
+        assert row in table, row
+    assert table.count(f"leaves open: {ReadOtherwise.SIDES}; {ReadOtherwise.PATTERN}.") == 1
+    assert "In brackets between" not in Reader(page(fake_results(), little)).text
 
 
 def test_the_published_calculation_is_no_result_of_the_scan(full):

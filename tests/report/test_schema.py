@@ -25,7 +25,7 @@ from gearwear.report.files.writing import finite
 from gearwear.report.records.comparison import SCHEMA, document
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import CyclesToLimit, WearStudy
-from tests.report.fake import bare_results, changed, fake_results, real_results
+from tests.report.fake import bare_results, changed, fake_results, open_contact, real_results
 
 MAY_BE_MISSING = {
     "closed_loop.texture_um", "closed_loop.candidates_tried", "closed_loop.unexplained.patterns", "closed_loop.unexplained.treatment",
@@ -88,6 +88,7 @@ MADE = {
     "weighed": weighed,
     "no inspection": lambda: changed(real_results(), "inspection", None),
     "halves": lambda: changed(changed(real_results(), "halves", (real_results().inspection,) * 2), "inspection", None),
+    "open contact": open_contact,
     "no spread": lambda: changed(real_results(), "pair.spread", None),
 }
 

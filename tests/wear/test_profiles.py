@@ -90,6 +90,20 @@ def test_wear_goes_on_below_the_form_circle_of_an_undercut_gear(pinion, depth):
     assert (nominal[profiles.radius < pinion.base_radius] == 0.0).all()
 
 
+def test_where_wear_ends_before_the_face_does_the_gear_is_as_it_was_made(wheel):
+    """Teeth 30 µm low on both flanks, and a patch on one that runs out towards z = 0: nothing there stands above the 30 µm, which all the others have."""
+    grid = CellGrid.for_scan(wheel, 20_000)
+    worn = np.zeros((24, 2, grid.rows, grid.fillet + grid.flank))
+    worn[1, 0, :3, grid.fillet + 3 : -3] = np.array([0.005, 0.2, 0.1])[:, None]
+    made = np.full_like(worn, -0.03)
+    nodes = ProfileNodes.of(grid)
+    profiles, unworn = worn_profiles(nodes, worn, made), worn_profiles(nodes, np.zeros_like(worn), made)
+    assert (profiles.half_angle <= unworn.half_angle + 1e-15).all()
+    on = profiles.radius > wheel.form_radius
+    low = (nodes.half_angle[0] - unworn.half_angle[1, 0])[:, on] * wheel.normal_lever
+    np.testing.assert_allclose(low, 0.03, rtol=1e-9)
+
+
 def test_a_gear_without_undercut_keeps_its_fillet(wheel):
     grid = CellGrid.for_scan(wheel, 200_000)
     field = np.zeros((24, 2, grid.rows, grid.fillet + grid.flank))
