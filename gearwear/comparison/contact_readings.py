@@ -21,6 +21,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
+from gearwear.diagnose.effects.base import MEASURED
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.path import PathOfContact
 from gearwear.meshing.spread import ContactSpread
@@ -38,6 +39,7 @@ class ReadOtherwise(StrEnum):
     PATTERN = "a form that no effect explains: whether it is the gear's or the scanner's, the scan does not tell"
     CARRIED = "a form of one side that no effect explains: whether the worn side has it too, the scan does not tell"
     EITHER = "an effect of the maker that may be the scanner's, or the other way round"
+    TOGETHER = "effects that take each other back: whether those of the scanner among them are the gear's, the scan does not tell"
     UNSURE = "flanks of sides that look worn throughout: how much they have lost is not known well enough"
     VIEWS = "views that were put together in one file and lie apart on some teeth"
 
@@ -260,8 +262,13 @@ def ways_to_read(measured: MeasuredGear, wear: Wear) -> list[tuple[ReadOtherwise
             carried = np.zeros_like(beside)
             carried[:, worn] = beside[:, [1 - index for index in worn]]
             ways += [(ReadOtherwise.CARRIED, sign * carried) for sign in (1.0, -1.0)]
-    if loop.either:
+    scanners = [effect for effect in loop.form if effect.evidence.taken_back and effect.kind in MEASURED]
+    if scanners or loop.either:
         points = side_points(grid)
+    if scanners:
+        fields = [loop.as_other(effect, points) for effect in scanners]
+        ways.append((ReadOtherwise.TOGETHER, np.sum(fields, axis=0).reshape(grid.side_shape)))
+    if loop.either:
         ways += [(ReadOtherwise.EITHER, loop.as_other(effect, points).reshape(grid.side_shape)) for effect in loop.either]
     if wear.unsure > wear.volume_std:
         ways.append((ReadOtherwise.UNSURE, _as_they_lie(measured, wear)))

@@ -181,8 +181,22 @@ class TestWays:
         np.testing.assert_array_equal(down, -up)
         assert not up[:, 1].any()
 
+    def test_what_takes_each_other_back_is_open_as_far_as_it_is_the_scanners(self, thin):
+        """What is told of the maker is on the gear already."""
+        (made,) = thin.loop.effects
+        back = replace(made, evidence=replace(made.evidence, taken_back=True))
+        assert ways_to_read(with_form(thin.measured, back), thin.wear.found) == []
+        coat = replace(sized(25.0, 1.0), amplitudes=np.array([0.025]), evidence=back.evidence)
+        ((what, field),) = ways_to_read(with_form(thin.measured, coat), thin.wear.found)
+        assert what is ReadOtherwise.TOGETHER
+        np.testing.assert_allclose(field[..., thin.measured.cells.grid.fillet :], 0.025, rtol=1e-12)
+
     def test_where_the_loop_leaves_nothing_open_nothing_is(self, thin):
         assert ways_to_read(thin.measured, thin.wear.found) == []
+
+
+def with_form(measured, effect):
+    return replace(measured, loop=replace(measured.loop, form=(effect,)))
 
 
 def with_patterns(measured, of_all):

@@ -11,6 +11,7 @@ SHORT = {
     ReadOtherwise.PATTERN: "a form that may be the scanner's",
     ReadOtherwise.CARRIED: "a form that the worn side may have too",
     ReadOtherwise.EITHER: "made so or scanned so",
+    ReadOtherwise.TOGETHER: "effects that take each other back",
     ReadOtherwise.UNSURE: "loss of flanks that look worn",
     ReadOtherwise.VIEWS: "views that lie apart",
 }
