@@ -103,12 +103,12 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
 
 def places(count: int, width: int) -> Ints:
     """Middles of windows of `width` (odd) that lie side by side in a row of `count`, from one end to the other: the same from either end. Where they do not go
-    into it they overlap evenly; or they leave gaps, which together are less than `HIDDEN` of a window."""
+    into it they overlap evenly, by half of one at most; or they leave gaps, which together are less than `HIDDEN` of a window where there is room for three."""
     width = min(width, count)
-    number = -(-count // width)
+    number, left = -(-count // width), count - width
     if (number - count) % 2:  # one lies in the middle where the row has one
-        number += -1 if number > 1 and count - (number - 1) * width < HIDDEN * width else 1
-    left = count - width
+        few = count - (number - 1) * width < HIDDEN * width or left < 0.5 * width * number
+        number += -1 if number > 1 and few else 1
     lower = width // 2 + np.arange(number // 2) * left // max(number - 1, 1)
     middle = [(count - 1) // 2] if number % 2 else []
     return np.unique(np.concatenate([lower, middle, count - 1 - lower]).astype(np.int64))
