@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -27,6 +28,8 @@ from gearwear.wear_law.study import Ahead
 HALVES = "double helical: taper, twist and feed marks are not looked for; the halves are inspected one by one"
 SECTION_WEIGHED = "[weighing] is left out: the gear was weighed, but a planar section has no volume"
 """Said of a weighed gear of which only a section was scanned."""
+ELSEWHERE = 0.2
+"""Share of tips, fillets or roots that must be seen for a coat to show on them."""
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -119,6 +122,17 @@ def contact_note(pair: PairResult | None) -> tuple[str, ...]:
     )
 
 
+def proud_notes(proud: tuple[float, float], coverage: Mapping[str, float]) -> list[str]:
+    """That worn flanks stand by `proud`, left and right, mm, above the design somewhere, and why: a coat shows on what else was seen, if that was."""
+    coated = "" if any(coverage.get(name, 0.0) > ELSEWHERE for name in ("tip", "fillet", "root")) else " or wear a coat"
+    return [
+        f"the worn {side} flanks stand {1e3 * height:.0f} µm proud of the design where they are highest: the teeth were cut thicker than drawn{coated},"
+        " and what is lost is counted from there"
+        for side, height in zip(Side, proud, strict=True)
+        if height > 0.0
+    ]
+
+
 def seam_note(seam: DriftSeam) -> str:
     """That a tooth may be told wrong for where the scan began."""
     told, lost = ("thinner", "less") if seam.thicker > 0.0 else ("thicker", "more")
@@ -174,12 +188,7 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
         " taken off what they lost"
         for ridge in wear.ridges
     ]
-    notes += [
-        f"the worn {side} flanks stand {1e3 * height:.0f} µm proud of the design where they are highest: the teeth were cut thicker than drawn,"
-        " and what is lost is counted from there"
-        for side, height in zip(Side, wear.proud, strict=True)
-        if height > 0.0
-    ]
+    notes += proud_notes(wear.proud, measured.coverage)
     if wear.unseen > wear.volume_std:
         notes.append(
             "no worn flank was seen whole: what is missing where nothing was seen is not in the volume, and would be up to"

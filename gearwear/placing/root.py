@@ -22,6 +22,8 @@ SAMPLE = 8_000
 """Points of the root that a candidate is tried on."""
 LEAST_POINTS = 200
 """Fewer say nothing of the root."""
+DOWN = 0.1
+"""Modules below the form circle from where on points are a root's: nearer to it they may be the last of a flank, by chance."""
 BINS = 12
 """Bins along the root, equally filled: what is common to all teeth is the median in each."""
 LOST = 0.2
@@ -118,9 +120,11 @@ def fit_root(located: SurfacePoints, gear: Gear) -> Root:
     and with the one that the root circle shows.
     """
     zone = _zone(located, gear)
-    if len(zone) < LEAST_POINTS:
+    m = gear.transverse_module
+    below = gear.orientation * (gear.form_radius - np.hypot(zone[:, 0], zone[:, 1]))
+    if (below > DOWN * m).sum() < LEAST_POINTS:
         return Root(gear, False, True, gear.spec.rack_tip_radius, gear.spec.dedendum, float("nan"), float("nan"))
-    misfit_of_design, m = _misfit(zone, gear), gear.transverse_module
+    misfit_of_design = _misfit(zone, gear)
     kept = Root(gear, True, True, gear.spec.rack_tip_radius, gear.spec.dedendum, misfit_of_design, misfit_of_design)
     if gear.spec.internal:  # what else cut it is not searched for
         fits = gear.root_stated and misfit_of_design <= UNLIKE * m

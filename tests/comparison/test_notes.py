@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 
 import gearwear as gw
-from gearwear.comparison.notes import off_the_drawing, seam_note, take_each_other_back
+from gearwear.comparison.notes import off_the_drawing, proud_notes, seam_note, take_each_other_back
 from gearwear.comparison.placed_notes import SMOOTHED, smoothing_of
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
@@ -84,6 +84,17 @@ def test_effects_that_take_each_other_back_are_told_as_no_finding():
     (note,) = take_each_other_back(SimpleNamespace(form=form))
     assert note.startswith("profile slope and tip relief fit best together, but of each the others take back most: no finding")
     assert take_each_other_back(SimpleNamespace(form=form[1:2])) == take_each_other_back(None) == ()
+
+
+def test_flanks_alone_that_stand_proud_may_wear_a_coat():
+    (note,) = proud_notes((0.032, 0.0), {"flank": 1.0, "tip": 0.9})
+    assert note == (
+        "the worn left flanks stand 32 µm proud of the design where they are highest: the teeth were cut thicker than drawn,"
+        " and what is lost is counted from there"
+    )
+    (alone,) = proud_notes((0.0, 0.032), {"flank": 1.0, "fillet": 0.07})
+    assert "the worn right flanks" in alone and "cut thicker than drawn or wear a coat, and" in alone
+    assert proud_notes((0.0, 0.0), {}) == []
 
 
 def test_a_tooth_that_may_be_told_wrong_for_where_the_scan_began_is_named():

@@ -102,9 +102,12 @@ def test_chamfered_ends_are_no_part_of_the_root():
     assert root.misfit == pytest.approx(measured().root.misfit, abs=0.0015)
 
 
-def test_a_scan_without_roots_says_nothing_of_them():
-    gear, located = designed(WHEEL), measured().located
-    root = fit_root(located.take(np.hypot(*located.position[:, :2].T) > gear.form_radius + 0.2), gear)
+@pytest.mark.parametrize("below", [-0.2, 0.0, 0.2])
+def test_a_scan_without_roots_says_nothing_of_them(below):
+    """Nor where it ends with the flanks, or a little further: of a root that begins higher these points would be, and fit."""
+    gear, located = designed(replace(WHEEL, rack_tip_radius=0.25)), measured().located
+    on = located.position + located.normal * np.nan_to_num(located.deviation)[:, None]
+    root = fit_root(locate(on[np.hypot(*on[:, :2].T) > gear.form_radius - below], gear), gear)
     assert not root.seen and root.gear is gear and root.words() == ""
 
 
