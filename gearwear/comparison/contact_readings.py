@@ -85,7 +85,7 @@ Ways = tuple[tuple[ReadOtherwise, tuple[ContactNumbers, ...]], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class ContactReading:
     """The scan with other sides worn throughout.
 
     Parameters
@@ -109,12 +109,12 @@ class OtherReadings:
     ----------
     ways : Ways
         With the sides that are told to be worn throughout.
-    others : tuple of Reading
+    others : tuple of ContactReading
         With other sides.
     """
 
     ways: Ways = ()
-    others: tuple[Reading, ...] = ()
+    others: tuple[ContactReading, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +215,8 @@ def other_readings(
         return tuple((what, numbers) for (gear, what), numbers in found.items() if gear == number and what is not None)
 
     readings = (
-        Reading(found[number, None][0], sum(gear.level_std), ways(number)) for number, (gear, _) in enumerate(others, start=1)
+        ContactReading(found[number, None][0], sum(gear.level_std), ways(number))
+        for number, (gear, _) in enumerate(others, start=1)
     )
     return OtherReadings(ways(0), tuple(readings))
 

@@ -13,8 +13,8 @@ import pytest
 import gearwear as gw
 from gearwear.comparison.contact_readings import (
     ContactNumbers,
+    ContactReading,
     OtherReadings,
-    Reading,
     ReadOtherwise,
     contact_limits,
     other_readings,
@@ -58,7 +58,7 @@ class TestLimits:
     @pytest.mark.parametrize("way", [off(), off(te=0.0019), off(greatest=-0.0039)])
     def test_nor_what_is_within_its_own_interval(self, way):
         assert contact_limits(TOLD, OtherReadings(((ReadOtherwise.PATTERN, (way,)),)), SPREAD) is None
-        assert contact_limits(TOLD, OtherReadings((), (Reading(way, 0.0, ()),)), SPREAD) is None
+        assert contact_limits(TOLD, OtherReadings((), (ContactReading(way, 0.0, ()),)), SPREAD) is None
 
     def test_what_may_be_so_or_not_adds_up(self):
         """TE 10 µm that a pattern takes to 14 or 7 and an effect to 15: 7 to 19, and 1.96 µm on either hand."""
@@ -73,8 +73,8 @@ class TestLimits:
 
     def test_of_readings_with_other_sides_one_is_true(self):
         """One lies 30 µm above and is itself open by 5 µm, the other 20 µm below: each with its own level, 3 µm, in place of nothing."""
-        above = Reading(off(greatest=0.03), 0.003, ((ReadOtherwise.PATTERN, (off(greatest=0.035),)),))
-        limits = contact_limits(TOLD, OtherReadings((), (above, Reading(off(greatest=-0.02), 0.003, ()))), SPREAD)
+        above = ContactReading(off(greatest=0.03), 0.003, ((ReadOtherwise.PATTERN, (off(greatest=0.035),)),))
+        limits = contact_limits(TOLD, OtherReadings((), (above, ContactReading(off(greatest=-0.02), 0.003, ()))), SPREAD)
         own = 1.96 * np.hypot(0.002, 0.003)
         assert limits.high.backlash_greatest == pytest.approx(0.050 + 0.035 + own, rel=1e-12)
         assert limits.low.backlash_greatest == pytest.approx(0.050 - 0.02 - own, rel=1e-12)

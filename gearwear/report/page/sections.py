@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,7 +21,6 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.loaded.study import LoadedStudy
-from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.shafts import take_up_words
 from gearwear.report.charts.sheet import plain
 from gearwear.report.figures.arrays import ReportArrays
@@ -30,7 +29,7 @@ from gearwear.report.page import pictures
 from gearwear.report.page.blocks import Block, Columns, Facts, Heading, Items, Paragraph, Section, Table, blocks
 from gearwear.report.records.comparison import made_by
 from gearwear.report.words.consequences import HEAD, TEXT, change_rows, said_changes
-from gearwear.report.words.contact import between, reaches_beyond
+from gearwear.report.words.contact import contact_rows
 from gearwear.report.words.effects import fitted_words, found_words
 from gearwear.report.words.loaded import HEAD as HEAD_LOADED
 from gearwear.report.words.loaded import TEXT as TEXT_LOADED
@@ -225,7 +224,7 @@ def meshing(results: Results, arrays: ReportArrays) -> Section:
     housing = "The housing holds the shafts at the design's centre distance. Ranges run over one revolution; ± and the change are those of the greatest."
     return Section("meshing", link, title, blocks(
         Paragraph(housing),
-        Table(("", "design", "worn", "change"), _meshing_rows(pair)),
+        Table(("", "design", "worn", "change"), contact_rows(pair)),
         None if pair.limits is None else Paragraph(f"In brackets between what a number lies (of backlash the greatest), by what the scan leaves open: {'; '.join(pair.limits.why)}."),
         None if pair.shafts is None else Paragraph(take_up_words(pair.shafts)),
         None if pair.loaded is None else _loaded(pair.loaded),
@@ -265,54 +264,6 @@ def _running(pair: PairResult) -> list[Block]:
         Paragraph(running_words(running)),
         Table(HEAD_RUNNING, running_rows(running), caption=CAPTION_RUNNING),
         pictures.how_it_ran(running),
-    )
-
-
-def _meshing_rows(pair: PairResult) -> list[tuple[str, str, str, str]]:
-    exact, angle = pair.design, math.degrees(pair.design.working_pressure_angle)
-    least, most, std = pair.least_backlash, pair.greatest_backlash, pair.greatest_backlash_std
-    plays: tuple[tuple[str, Callable[[Backlash], float]], ...] = (
-        ("circumferential backlash, mm", lambda play: play.circumferential),
-        ("normal backlash, mm", lambda play: play.normal),
-        ("radial backlash, mm", lambda play: play.radial),
-        ("angular backlash of the pinion, °", lambda play: math.degrees(play.angular_pinion)),
-        ("angular backlash of the gear, °", lambda play: math.degrees(play.angular_gear)),
-    )
-    if exact.backlash.axial is not None:
-        plays += (("axial backlash, mm", lambda play: play.axial or 0.0),)
-    te_std = 0.0 if pair.spread is None else 1e3 * pair.spread.transmission_error
-    open_ = None if pair.open_backlash is None else pair.open_backlash[0]
-    return [
-        _compared("centre distance, mm", exact.centre_distance, exact.centre_distance, 3),
-        _compared("working pressure angle, °", angle, angle, 3),
-        *(
-            _compared(
-                name, of(exact.backlash), of(most), 4, of(least), 0.0 if std is None else of(std),
-                None if open_ is None else (of(open_[0]), of(open_[1])),
-            )
-            for name, of in plays
-        ),
-        _compared("path of contact, mm", exact.path.length, pair.path_length, 3, limits=pair.open_path),
-        _compared("contact ratio", exact.path.total_contact_ratio, pair.contact_ratio, 3, limits=pair.open_ratio),
-        _compared(
-            "transmission error, peak to peak, µm", 0.0, pair.contact.peak_to_peak_um, 1, std=te_std, limits=pair.open_error_um
-        ),
-    ]  # fmt: skip
-
-
-def _compared(
-    name: str, design: float, worn: float, digits: int, least: float | None = None, std: float = 0.0,
-    limits: tuple[float, float] | None = None,
-) -> tuple[str, str, str, str]:  # fmt: skip
-    shown = number(worn, digits) if least is None else f"{number(least, digits)} … {number(worn, digits)}"
-    shown += f" ± {number(std, digits)}" if round(std, digits) > 0.0 else ""
-    shown += f" ({between(limits, digits)})" if limits is not None and reaches_beyond(worn, std, limits, digits) else ""
-    change = number(worn - design, digits)
-    return (
-        name,
-        number(design, digits),
-        shown,
-        f"+{change}" if worn > design and any(d in change for d in "123456789") else change,
     )
 
 

@@ -27,7 +27,7 @@ from gearwear.placing.root import Root
 from gearwear.placing.tip_edge import TipEdge
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
-from gearwear.report.records.meshing import take_up_record
+from gearwear.report.records.meshing import contact_limits_record, take_up_record
 from gearwear.report.records.numbers import Json, parameters_record, value_std, value_std_unit
 from gearwear.report.records.running import running_record
 from gearwear.report.records.teeth import mark_record, pattern_values, same_teeth_record
@@ -495,22 +495,6 @@ def _paper(paper: PublishedMeshing) -> Json:
     }
 
 
-def _contact_limits(pair: PairResult) -> Json:
-    """Limits beside the numbers of the contact, and why; nothing where they stand by themselves."""
-    limits, path = pair.limits, pair.open_path
-    if limits is None or path is None:
-        return {}
-    ends = (("low", limits.low, path[0]), ("high", limits.high, path[1]))
-    record: Json = {"range_from": "; ".join(limits.why)}
-    for end, numbers, length in ends:
-        record |= {
-            f"transmission_error_um_{end}": 1e3 * numbers.transmission_error,
-            f"contact_ratio_{end}": numbers.contact_ratio,
-            f"path_of_contact_mm_{end}": length,
-        }
-    return record
-
-
 def _meshing(pair: PairResult) -> Json:
     design, contact, spread = pair.design, pair.contact, pair.spread
     play = _backlash(pair.greatest_backlash) | _backlash(pair.least_backlash, "_min")
@@ -548,7 +532,7 @@ def _meshing(pair: PairResult) -> Json:
             "backlash_max_at_deg": math.degrees(contact.backlash_max.rotation),
             "drive_flank": str(pair.drive_side),
             "mate": "nominal",
-            **_contact_limits(pair),
+            **contact_limits_record(pair),
         },
     }
     if pair.loaded is not None:
