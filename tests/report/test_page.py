@@ -202,7 +202,7 @@ def test_what_is_open_of_the_contact_stands_beside_it_with_why(little):
     for row in ("(1.100 to 1.300)", "(1.0 to 1 600.0)"):
         assert row in table, row
     assert table.count(f"leaves open: {ReadOtherwise.SIDES}; {ReadOtherwise.PATTERN}.") == 1
-    assert "In brackets between" not in Reader(page(fake_results(), little)).text
+    assert "In brackets: within" not in Reader(page(fake_results(), little)).text
 
 
 def test_the_published_calculation_is_no_result_of_the_scan(full):

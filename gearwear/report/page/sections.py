@@ -225,7 +225,7 @@ def meshing(results: Results, arrays: ReportArrays) -> Section:
     return Section("meshing", link, title, blocks(
         Paragraph(housing),
         Table(("", "design", "worn", "change"), contact_rows(pair)),
-        None if pair.limits is None else Paragraph(f"In brackets between what a number lies (of backlash the greatest), by what the scan leaves open: {'; '.join(pair.limits.why)}."),
+        None if pair.limits is None else Paragraph(f"In brackets: within what a number (of backlash the greatest) lies by what the scan leaves open: {'; '.join(pair.limits.why)}."),
         None if pair.shafts is None else Paragraph(take_up_words(pair.shafts)),
         None if pair.loaded is None else _loaded(pair.loaded),
         None if pair.law is None else _wear_law(pair.law, results.wear.regions),
