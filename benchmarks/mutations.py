@@ -132,6 +132,7 @@ MUTATIONS = [
         ("diagnose/made_height.py", "_over_the_face(known, values) for", "values for", "diagnose/core/test_made_height.py"),
         ("diagnose/effects/edge_rounding.py", "spec.end_edge) > 0.0", "spec.end_edge) > 1e9", "diagnose/test_edge_rounding.py"),
         ("wear/least.py", "HIDDEN = 1.0 / 3.0", "HIDDEN = 1.0", "wear/test_least.py"),
+        ("wear/unmeasured.py", "float(drawn[:, at].std())", "0.0", "wear/test_unmeasured.py"),
         ("diagnose/pitch_point.py", "rules().shape_price + off**2", "rules().shape_price", "diagnose/core/test_pitch_point.py"),
         ("diagnose/worn_sides.py", "context.mate is not None or", "", "diagnose/core/test_pitch_point.py"),
         ("diagnose/worn_sides.py", "fitted = self._alike(beside, loss, worn, fitted.weight)", "pass", "diagnose/core/test_worn_sides.py"),

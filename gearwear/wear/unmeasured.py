@@ -65,11 +65,10 @@ def unmeasured_teeth(thickness: SectionThickness, wear: Wear, arcs: WornArcs) ->
         if not here.any() or not math.isfinite(known):
             continue
         curve[usual] += level
-        # Each surface that is drawn has its own least: their mean and scatter are what is known of it.
+        # Of the surface that is expected: the least of one that is drawn is lower by its luck.
         drawn = _drawn([arcs.of[tooth, side] for side in Side if (tooth, side) in arcs.of])
-        least = np.where(here, curve + drawn, np.inf).min(axis=1)
         at = int(np.argmin(np.where(here, curve, np.inf)))
-        rows.append((tooth, at, float(least.mean()), math.hypot(known, float(least.std()))))
+        rows.append((tooth, at, float(curve[at]), math.hypot(known, float(drawn[:, at].std()))))
     return _of_rows(rows, thickness) if rows else None
 
 

@@ -57,6 +57,18 @@ def test_where_nobody_saw_the_flank_its_surface_is_no_thickness():
     assert found(arcs_of(one, seen=seen)) is None
 
 
+def test_the_least_of_surfaces_that_are_drawn_is_lower_by_their_luck():
+    """Of a flank that is even along the face and known to 5 µm in each section by itself: some 10 µm; it is told where it is expected."""
+    draws = 0.005 * np.random.default_rng(4).standard_normal((6, 400, N))
+    draws += -0.05 - draws.mean(axis=1, keepdims=True)
+    worn = np.zeros((TEETH, 2), dtype=bool)
+    worn[1, Side.LEFT.index] = True
+    arcs = WornArcs({(1, Side.LEFT): FlankArcs.of(draws, np.eye(N))}, np.ones((TEETH, 2, N), dtype=bool), worn)
+    told = found(arcs, region_std=0.002).least
+    assert told.value == pytest.approx(5.95)
+    assert told.std == pytest.approx(math.hypot(TURN * 0.002, 0.005), rel=0.1)
+
+
 def test_how_high_surfaces_lie_is_known_from_teeth_that_sections_measured():
     """These lie 20 µm above theirs at one end and 40 at the other, give or take 3; one was chipped and counts for nothing."""
     curves = {(tooth, side): np.zeros(N) for tooth in range(FEWEST_TEETH + 2) for side in Side}
