@@ -381,7 +381,8 @@ def account(
     if worn := problem.context.open_sides:
         stand_off = fillets_off(fit, model, problem.context.worn) if told else 0.0
         besides = math.hypot(2.0 * bow_of_sound(fit, model, problem.context.worn), stand_off)
-        made = made_height(worn, fit, off, form_of_all(patterns, len(fit.target)), besides)
+        from_one_end = any(face.side in worn for face in problem.context.faces)
+        made = made_height(worn, fit, off, form_of_all(patterns, len(fit.target)), besides, from_one_end)
     hidden = fit.hidden(model, noise)
     start, end = steps[len(levels)], steps[-1]
     return Loop(

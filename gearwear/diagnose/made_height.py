@@ -34,10 +34,12 @@ class MadeHeight:
         return self.std if side in self.sides else 0.0
 
 
-def made_height(worn: frozenset[Side], fit: Fit, told: list[Floats], untold: Floats, besides: float = 0.0) -> MadeHeight:
+def made_height(
+    worn: frozenset[Side], fit: Fit, told: list[Floats], untold: Floats, besides: float = 0.0, from_one_end: bool = False
+) -> MadeHeight:
     """Of sides `worn` throughout: as much as what the maker left varies over the flanks that are seen (RMS): who is off by that in form and pitch is
-    no better in thickness. Of each kind that is `told`, (m,) mm, only its mean over the face counts; of what is `untold`, (m,) mm, all. And what else
-    leaves it open, `besides`, mm.
+    no better in thickness. Of each kind that is `told`, (m,) mm, only its mean over the face counts, but where the height is known `from_one_end` of it; of what is `untold`, (m,) mm, all.
+    And what else leaves it open, `besides`, mm.
 
     Notes
     -----
@@ -54,7 +56,7 @@ def made_height(worn: frozenset[Side], fit: Fit, told: list[Floats], untold: Flo
     variance = besides**2
     known = grid.flank_shape(seen)
     untold, *told = (grid.flank_shape(np.where(seen, field, 0.0)) for field in (untold, *told))
-    for values in (untold, *(_over_the_face(known, values) for values in told)):
+    for values in (untold, *(values if from_one_end else _over_the_face(known, values) for values in told)):
         variance += _variance_alike(known, values) + _variance_of_neighbours(known, values)
     return MadeHeight(worn, math.sqrt(variance)) if variance > 0.0 else MadeHeight()
 

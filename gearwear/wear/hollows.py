@@ -18,7 +18,6 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.placing.cells import Cells
 from gearwear.wear.flank_arcs import ACROSS, FlankArcs, WornArcs
-from gearwear.wear.least import HIDDEN
 from gearwear.wear.section_sums import SectionSums
 
 
@@ -118,8 +117,8 @@ def _within(flanks: Sequence[FlankArcs], number: Floats, made: Floats, width: in
         drawn = arc.expected[1:]
         about = drawn - np.outer(ACROSS, ACROSS @ drawn) / (ACROSS @ ACROSS)  # the straight line is taken out
         spread.append(np.sqrt(np.maximum(mean(about**2).mean(axis=0) - mean(about).mean(axis=0) ** 2, 0.0)))
-    # Windows side by side may leave gaps between them (`places`).
-    reach = 2 * (half + round(0.5 * HIDDEN * width)) + 1
+    # Windows side by side may leave a gap of up to half of one.
+    reach = 2 * (half + (width - 1) // 4) + 1
     expected = sum(arc.expected[0] for arc in flanks) + made
     # Of the surface that is expected: the least of one that is drawn is lower by its luck.
     over_all = sum(band.mean(axis=0) for band in over_band)

@@ -29,8 +29,8 @@ NOT_BENT = 4.0
 """Standard deviations of a value that its second difference may be by noise, at a least."""
 WIDTHS = (5, 3, 1)
 """Neighbours that are averaged, as long as that does not hide the bottom of a pit."""
-HIDDEN = 1.0 / 3.0
-"""Share of a window, in all, that nobody looks at, at most; what is looked at more than once counts as often, and takes more off for luck."""
+HIDDEN = 0.5
+"""Share of a window, in the middle of a row, that nobody looks at, at most; what is looked at twice counts twice, and takes more off for luck."""
 HIDES = 2.0
 """Standard deviations by which fewer neighbours must show a lower least for that."""
 
@@ -102,23 +102,23 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
 
 
 def places(count: int, width: int) -> Ints:
-    """Middles of windows of `width` (odd) that lie side by side in a row of `count`, from one end to the other: the same from either end. Where they do not go
-    into it they overlap evenly, by half of one at most; or they leave gaps, which together are less than `HIDDEN` of a window where there is room for three."""
+    """Middles of windows of `width` (odd) in a row of `count`, the same from either end: side by side from both ends inwards, those in the middle apart or over
+    each other (`_apart`). Where more than `HIDDEN` of one would lie between them there are two more, and all overlap evenly, by half of one at most."""
     width = min(width, count)
-    number, left = -(-count // width), count - width
-    if (number - count) % 2:  # one lies in the middle where the row has one
-        few = count - (number - 1) * width < HIDDEN * width or left < 0.5 * width * number
-        number += -1 if number > 1 and few else 1
-    lower = width // 2 + np.arange(number // 2) * left // max(number - 1, 1)
+    apart = np.flatnonzero(_apart(count, width))
+    number, left = len(apart) + 2, count - width
+    if count - len(apart) * width <= HIDDEN * width or left < 0.5 * width * (number - 1):
+        return apart
+    lower = width // 2 + np.arange(number // 2) * left // (number - 1)
     middle = [(count - 1) // 2] if number % 2 else []
-    return np.unique(np.concatenate([lower, middle, count - 1 - lower]).astype(np.int64))
+    return np.concatenate([lower, middle, (count - 1 - lower)[::-1]]).astype(np.int64)
 
 
 def _apart(count: int, width: int) -> Bools:
-    """(count,) middles of windows that share nothing, from both ends inwards; those in the middle may overlap where that leaves less of a window."""
-    width = min(width, count)
+    """(count,) middles of windows side by side from both ends inwards. Where they do not go into the row, those in the middle overlap or leave a gap,
+    whichever is less of a window."""
     number = -(-count // width)
-    if (number - count) % 2:
+    if (number - count) % 2:  # one lies in the middle where the row has one
         number += -1 if number > 1 else 1
     lower = np.minimum(width // 2 + width * np.arange(number // 2), (count - 1) // 2)
     result = np.zeros(count, dtype=bool)
@@ -225,7 +225,7 @@ def _of_width(
     mean = np.where(seen, _sums(np.where(seen, curves, 0.0), width) / number, np.nan)
     variance = _sums(np.where(seen, std, 0.0) ** 2, width) / number**2
     variance += texture * float(np.mean(correlation(step, width)))
-    apart = np.broadcast_to(_apart(curves.shape[1], width), curves.shape)
+    apart = np.broadcast_to(_apart(curves.shape[1], min(width, curves.shape[1])), curves.shape)
     truths = unmixed(mean.ravel(), np.sqrt(np.where(seen, variance, np.nan)).ravel(), apart.ravel())
     known, least = seen.any(axis=1), np.where(seen, mean, np.inf)
     part = np.append(known, True)
@@ -328,7 +328,7 @@ def least_mean(
     white = _over_windows(std**2, window) / size
     common = texture * float(np.prod([np.mean(correlation(step, number)) for step, number in zip(steps, window, strict=True)]))
     known = np.where(where, np.sqrt(white + common), np.nan)
-    apart = np.outer(*(_apart(count, width) for count, width in zip(mean.shape, window, strict=True)))
+    apart = np.outer(*(_apart(count, min(width, count)) for count, width in zip(mean.shape, window, strict=True)))
     truths = unmixed(mean[where], known[where], apart[where])
     unit = _unit(value.shape)[0]
     noise = _over_windows(np.concatenate([unit, unit[:, ::-1]]) * std, window)[:, where]  # which end comes first does not matter

@@ -97,6 +97,9 @@ def test_what_goes_along_the_face_alone_says_nothing_of_thickness(fit):
         assert made_height(LEFT, fit, [beside], none).std < 0.05 * beside[fit.use].std()
         assert made_height(LEFT, fit, [slope, beside], none).std == pytest.approx(alone, rel=0.01)
         assert made_height(LEFT, fit, [], beside).std == pytest.approx(beside[fit.use].std(), rel=0.02)
+        # From an end that no mate touched on it is known as well as flanks are straight.
+        at_the_end = made_height(LEFT, fit, [beside], none, from_one_end=True)
+        assert at_the_end.std == pytest.approx(beside[fit.use].std(), rel=0.02)
 
 
 def off_by(fit, height):
