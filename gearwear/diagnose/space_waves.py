@@ -263,10 +263,10 @@ class _Lines:
         Voxels along x, y and z: those that hold cells, and with the room that the transform needs.
     along : list of (k,) int
         Lines along each axis up to the shortest wave.
-    which : tuple of three (l,) int
-        Those of all directions that are looked for, among these.
-    vectors : (3, l) float
-        Waves per mm.
+    waves : list of (k,) float
+        Of these, waves per mm.
+    which, mirror : (l,) int
+        Those of all directions that are looked for, and their mirror images, among all of these laid flat: millions of a large gear.
     order : (l,) int
         The lines shell by shell: those of about one length across and along the axis.
     ends : (s,) int
@@ -277,9 +277,10 @@ class _Lines:
     extent: tuple[int, ...]
     shape: list[int]
     along: list[Ints]
-    which: tuple[Ints, ...]
-    vectors: Floats
-    order: Ints
+    waves: list[Floats]
+    which: NDArray[np.int32]
+    mirror: NDArray[np.int32]
+    order: NDArray[np.int32]
     ends: Ints
 
     @classmethod
@@ -297,14 +298,22 @@ class _Lines:
         ahead = waves[0][waves[0] >= 0.0]  # a wave and its mirror image are one
         across = np.hypot(ahead[:, None], waves[1][None, :])
         length = np.sqrt(across[:, :, None] ** 2 + waves[2] ** 2)
-        which = np.nonzero((length >= 1.0 / radius) & (length <= 1.0 / shortest))
-        vectors = np.stack([own[places] for own, places in zip(waves, which, strict=True)])
+        places = np.nonzero((length >= 1.0 / radius) & (length <= 1.0 / shortest))
+        del length
+        kept = tuple(len(own) for own in along)
+        which, mirror = (
+            np.ravel_multi_index(one, kept, mode="wrap").astype(np.int32) for one in (places, tuple(-one for one in places))
+        )
         step = [1.0 / (n * voxel) for n in shape]
-        rings, floors = np.rint(np.hypot(*vectors[:2]) / (SHELL * step[0])), np.rint(np.abs(vectors[2]) / (SHELL * step[2]))
+        x, y, z = (own[at_line] for own, at_line in zip(waves, places, strict=True))
+        del places
+        rings, floors = np.rint(np.hypot(x, y) / (SHELL * step[0])), np.rint(np.abs(z) / (SHELL * step[2]))
         shell = (rings * (floors.max() + 1.0) + floors).astype(np.int32)
-        order = np.argsort(shell, kind="stable")
+        del x, y, z, rings, floors
+        order = np.argsort(shell, kind="stable").astype(np.int32)
         ends = np.flatnonzero(np.diff(shell[order])) + 1
-        return cls(np.ravel_multi_index(at.T, extent), extent, shape, along, which, vectors, order, ends)
+        voxels = np.ravel_multi_index(at.T, extent)
+        return cls(voxels, extent, shape, along, waves, which, mirror, order, ends)
 
     def strongest(self, sheet: _Sheet) -> Floats:
         """The line that stands out most of its shell, waves per mm (3,)."""
@@ -313,15 +322,18 @@ class _Lines:
         most = [float(shell.max()) / max(float(np.median(shell)), 1e-300) for shell in shells]
         best = int(np.argmax(most))
         first = self.ends[best - 1] if best else 0
-        return np.asarray(self.vectors[:, self.order[first + int(np.argmax(shells[best]))]])
+        line = int(self.which[self.order[first + int(np.argmax(shells[best]))]])
+        places = np.unravel_index(line, tuple(len(own) for own in self.waves))
+        return np.array([own[at] for own, at in zip(self.waves, places, strict=True)])
 
     def power(self, sheet: _Sheet) -> NDArray[np.float32]:
         """By how much each line lowers the weighted square, (l,): in single precision, for all that is asked is which stands out."""
         carried = (sheet.weight * sheet.left)[:, None] * sheet.points.normal
         sums = [np.bincount(self.voxel, column, math.prod(self.extent)).reshape(self.extent) for column in carried.T]
         plane = _transformed((sums[0] + 1j * sums[1]).astype(np.complex64), self.shape, self.along)
-        mirrored = np.conj(plane[tuple(-one for one in self.which)])
-        ahead, upwards = plane[self.which], _transformed(sums[2].astype(np.float32), self.shape, self.along)[self.which]
+        mirrored, ahead = np.conj(plane.ravel()[self.mirror]), plane.ravel()[self.which]
+        del plane
+        upwards = _transformed(sums[2].astype(np.float32), self.shape, self.along).ravel()[self.which]
         moment = np.stack([(ahead + mirrored) / 2, (ahead - mirrored) / 2j, upwards])
         inverse = np.linalg.pinv(sheet.squares, rcond=SEEN).astype(np.float32)
         return np.asarray(2 * np.real((np.conj(moment) * (inverse @ moment)).sum(axis=0)), dtype=np.float32)
