@@ -225,7 +225,7 @@ def _of_width(
     mean = np.where(seen, _sums(np.where(seen, curves, 0.0), width) / number, np.nan)
     variance = _sums(np.where(seen, std, 0.0) ** 2, width) / number**2
     variance += texture * float(np.mean(correlation(step, width)))
-    apart = np.broadcast_to(_apart(curves.shape[1], min(width, curves.shape[1])), curves.shape)
+    apart = np.broadcast_to(_apart(curves.shape[1], width), curves.shape)
     truths = unmixed(mean.ravel(), np.sqrt(np.where(seen, variance, np.nan)).ravel(), apart.ravel())
     known, least = seen.any(axis=1), np.where(seen, mean, np.inf)
     part = np.append(known, True)

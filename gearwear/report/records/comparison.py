@@ -25,9 +25,10 @@ from gearwear.placing.end_edge import EndEdge, Places
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.placing.tip_edge import TipEdge
+from gearwear.report.records.contact import contact_limits_record
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
-from gearwear.report.records.meshing import contact_limits_record, take_up_record
+from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.numbers import Json, parameters_record, value_std, value_std_unit
 from gearwear.report.records.running import running_record
 from gearwear.report.records.teeth import mark_record, pattern_values, same_teeth_record

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from gearwear.comparison.results import PairResult
 from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.clearance import Interference
@@ -216,19 +215,3 @@ def _movement(shafts: ShaftMovement) -> Json:
         "feasible": shafts.feasible,
         "obstacles": list(shafts.obstacles),
     }
-
-
-def contact_limits_record(pair: PairResult) -> Json:
-    """Limits beside the numbers of the contact, and why; nothing where they stand by themselves."""
-    limits, path = pair.limits, pair.open_path
-    if limits is None or path is None:
-        return {}
-    ends = (("low", limits.low, path[0]), ("high", limits.high, path[1]))
-    record: Json = {"range_from": "; ".join(limits.why)}
-    for end, numbers, length in ends:
-        record |= {
-            f"transmission_error_um_{end}": 1e3 * numbers.transmission_error,
-            f"contact_ratio_{end}": numbers.contact_ratio,
-            f"path_of_contact_mm_{end}": length,
-        }
-    return record

@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 from gearwear.comparison.contact_readings import ReadOtherwise
 from gearwear.comparison.results import PairResult
-from gearwear.design.quantity import NORMAL_95, SPACE, number
+from gearwear.design.quantity import NORMAL_95, number
 from gearwear.meshing.backlash import Backlash
+from gearwear.report.words.numbers import between
 
 SHORT = {
     ReadOtherwise.SIDES: "worn or made so",
@@ -27,14 +28,6 @@ def reaches_beyond(value: float, std: float, limits: tuple[float, float] | None,
     if limits is None:
         return False
     return max(value - limits[0], limits[1] - value) > NORMAL_95 * std + 0.5 * 10.0**-digits
-
-
-def between(limits: tuple[float, float], digits: int, unit: str = "") -> str:
-    """
-    >>> between((0.0, 16.77), 1, "µm").replace(SPACE, " ")
-    '0.0 to 16.8 µm'
-    """
-    return f"{number(limits[0], digits)} to {number(limits[1], digits)}" + (f"{SPACE}{unit}" if unit else "")
 
 
 def why_open(pair: PairResult) -> str:

@@ -57,6 +57,15 @@ def named(parameters: Mapping[str, ParameterEstimate]) -> list[str]:
     ]
 
 
+def between(limits: tuple[float, float], digits: int, unit: str = "") -> str:
+    """Limits in so many digits, with their unit.
+
+    >>> between((0.0, 16.77), 1, "µm").replace(SPACE, " ")
+    '0.0 to 16.8 µm'
+    """
+    return f"{number(limits[0], digits)} to {number(limits[1], digits)}" + (f"{SPACE}{unit}" if unit else "")
+
+
 def row(values: Iterable[float], digits: int) -> str:
     """A vector on one line.
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from gearwear.comparison.results import Results
+from gearwear.comparison.results import PairResult, Results
 from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import (
@@ -24,10 +24,10 @@ from gearwear.design.quantity import (
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.refusal import SeenRadii
-from gearwear.report.words.contact import between, reaches_beyond, why_open
+from gearwear.report.words.contact import reaches_beyond, why_open
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.lost import is_open, lost_words, may_be_none, open_words, size_words, where_lost, worn_so_thin
-from gearwear.report.words.numbers import effect_title, thickness_place, which_flanks
+from gearwear.report.words.numbers import between, effect_title, thickness_place, which_flanks
 from gearwear.scan.types import Scan
 from gearwear.wear.breakage import MISSING_TOOTH
 from gearwear.wear.regions import WearRegion
@@ -152,7 +152,7 @@ def depth_words(region: WearRegion, unit: str = "µm") -> str:
 def deepest_range(results: Results, worst: WearRegion) -> str:
     """Between what the deepest place lies where more than its standard deviation is open, its own 95 % with it; "" where it is not."""
     limits = results.open_volume.depth_limits(worst)
-    return "" if limits is None else f"{number(1e3 * limits[0], 0)} to {number(1e3 * limits[1], 0)}{SPACE}µm"
+    return "" if limits is None else between((1e3 * limits[0], 1e3 * limits[1]), 0, "µm")
 
 
 def _depth(depth: float) -> str:
@@ -374,11 +374,11 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
     play_std = 0.0 if std is None else std.circumferential
     figures = [
         _contact_figure(
-            results, "Backlash, greatest", (pair.greatest_backlash.circumferential, play_std, 3, "mm", LEAST_STD), pair.open_greatest,
+            pair, "Backlash, greatest", (pair.greatest_backlash.circumferential, play_std, 3, "mm", LEAST_STD), pair.open_greatest,
             f"design {number(pair.design.backlash.circumferential, 3)}{SPACE}mm, circumferential",
         ),
         _contact_figure(
-            results, "Transmission error", (pair.contact.peak_to_peak_um, te_std, 1, "µm", 1e3 * LEAST_STD), pair.open_error_um,
+            pair, "Transmission error", (pair.contact.peak_to_peak_um, te_std, 1, "µm", 1e3 * LEAST_STD), pair.open_error_um,
             "peak to peak over a revolution, unloaded",
         ),
     ]  # fmt: skip
@@ -391,22 +391,24 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
 
 
 def _contact_figure(
-    results: Results, name: str, told: tuple[float, float, int, str, float], limits: tuple[float, float] | None, note: str
+    pair: PairResult, name: str, told: tuple[float, float, int, str, float], limits: tuple[float, float] | None, note: str
 ) -> KeyFigure:
     """A number of the contact as `known` words it; within what it lies in its place where that is more."""
     value, std, digits, unit, _ = told
-    if results.pair is None or limits is None or not reaches_beyond(value, std, limits, digits):
-        return KeyFigure(name, known(*told[:2], digits, unit, told[4]), note)
-    beside, shown = f"{between(limits, digits)} not excluded", known(*told[:2], digits, unit, told[4])
+    shown = known(*told)
+    if limits is None or not reaches_beyond(value, std, limits, digits):
+        return KeyFigure(name, shown, note)
     if max(value - limits[0], limits[1] - value) > LOPSIDED * std:
-        beside, shown = f"likeliest {number(value, digits)}", between(limits, digits, unit)
-    return KeyFigure(name, shown, f"{beside}; {why_open(results.pair)}; {note}")
+        shown, beside = between(limits, digits, unit), f"likeliest {number(value, digits)}"
+    else:
+        beside = f"{between(limits, digits)} not excluded"
+    return KeyFigure(name, shown, f"{beside}; {why_open(pair)}; {note}")
 
 
 def thinnest_words(tooth: ThinnestTooth) -> str:
     """The least thickness, with its standard deviation; the 95 % interval in its place where that reaches much further."""
     if max(tooth.value - tooth.low, tooth.high - tooth.value) > LOPSIDED * tooth.std > 0.0:
-        return f"{number(tooth.low, 3)} to {number(tooth.high, 3)}{SPACE}mm"
+        return between((tooth.low, tooth.high), 3, "mm")
     return known(tooth.value, tooth.std, 3, "mm", 0.0)
 
 
