@@ -14,11 +14,10 @@ from functools import partial
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
-from gearwear.comparison.contributions import flank_levels, on_flanks, pattern_fields, put_back, side_fields, side_points
+from gearwear.comparison.contributions import flank_levels, pattern_fields, side_fields, side_points
 from gearwear.comparison.measured_gear import MeasuredGear
-from gearwear.comparison.worn_pair import PARTS, beside_mate, mesh_of_scanned
+from gearwear.comparison.worn_pair import ToothSides, beside_mate, mesh_of_scanned
 from gearwear.design.pair import Design
-from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import MEASURED
@@ -27,9 +26,7 @@ from gearwear.meshing.path import PathOfContact
 from gearwear.meshing.spread import ContactSpread
 from gearwear.processors import each
 from gearwear.wear.breakage import without_broken
-from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear
-from gearwear.wear.smooth import smooth_surface
 
 
 class ReadOtherwise(StrEnum):
@@ -182,30 +179,55 @@ def _beside(told: ContactNumbers, ways: Ways) -> tuple[Floats, Floats]:
     return below, above
 
 
-def other_readings(
-    design: Design, measured: MeasuredGear, wear: Wear, others: Sequence[tuple[MeasuredGear, Wear]], path: PathOfContact
-) -> OtherReadings:
+@dataclass(frozen=True, slots=True)
+class ReadGear:
+    """The scanned gear by one reading of the scan.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+    wear : Wear
+    depth : (teeth, 2, rows, fillet + flank) float
+        What is missing, smooth, mm.
+    unworn_seen : bool
+        Whether the wear is counted from a scan of the gear unworn.
+    """
+
+    measured: MeasuredGear
+    wear: Wear
+    depth: Floats
+    unworn_seen: bool = False
+
+    def sides(self) -> ToothSides:
+        """Its tooth sides, less what is broken off them."""
+        grid = self.measured.cells.grid
+        made = side_fields(self.measured, (), None if self.unworn_seen else self.wear).made
+        return ToothSides.of(grid, without_broken(self.depth, self.measured.broken, grid), self.wear.side_maps.area, made)
+
+
+def other_readings(design: Design, told: ReadGear, others: Sequence[ReadGear], path: PathOfContact) -> OtherReadings:
     """What the scan leaves open of the contact; nothing is run where it leaves nothing open.
 
     Parameters
     ----------
     design : Design
-    measured, wear : MeasuredGear, Wear
-        The scanned gear, and what it lost; the flanks that carry are those of it.
-    others : sequence of (MeasuredGear, Wear)
-        The same with other sides worn throughout that the scan does not exclude.
+    told : ReadGear
+        The flanks that carry are those of it.
+    others : sequence of ReadGear
+        With other sides worn throughout that the scan does not exclude.
     path : PathOfContact
         Of the design.
     """
     calls, of = list[partial[ContactNumbers]](), list[tuple[int, ReadOtherwise | None]]()
-    for number, (gear, lost) in enumerate(((measured, wear), *others)):
-        fields = list[tuple[ReadOtherwise | None, Floats | None]](ways_to_read(gear, lost))
+    for number, one in enumerate((told, *others)):
+        fields = list[tuple[ReadOtherwise | None, Floats | float]](ways_to_read(one.measured, one.wear))
         if number:
-            fields.append((None, None))
-        flanks = _Flanks.of(gear, lost) if fields else None
+            fields.append((None, 0.0))
+        if not fields:
+            continue
+        sides = one.sides()
         for what, field in fields:
-            assert flanks is not None
-            calls.append(partial(_numbers, design, gear, flanks, field, wear.drive_side, path))
+            calls.append(partial(numbers_with, design, one.measured, sides, field, told.wear.drive_side, path))
             of.append((number, what))
     found = dict[tuple[int, ReadOtherwise | None], tuple[ContactNumbers, ...]]()
     for which, numbers in zip(of, each(calls), strict=True):
@@ -215,38 +237,18 @@ def other_readings(
         return tuple((what, numbers) for (gear, what), numbers in found.items() if gear == number and what is not None)
 
     readings = (
-        ContactReading(found[number, None][0], sum(gear.level_std), ways(number))
-        for number, (gear, _) in enumerate(others, start=1)
+        ContactReading(found[number, None][0], sum(other.measured.level_std), ways(number))
+        for number, other in enumerate(others, start=1)
     )
     return OtherReadings(ways(0), tuple(readings))
 
 
-def _numbers(
-    design: Design, gear: MeasuredGear, flanks: _Flanks, field: Floats | None, side: Side, path: PathOfContact
+def numbers_with(
+    design: Design, gear: MeasuredGear, sides: ToothSides, field: Floats | float, side: Side, path: PathOfContact
 ) -> ContactNumbers:
-    """With so much more metal on the flanks, mm."""
+    """Of the scanned gear with so much more metal on its tooth sides, mm, of which `side` carries."""
     in_order = beside_mate(design, gear)
-    return ContactNumbers.of(mesh_of_scanned(design, gear, in_order(flanks.profiles(field)), side), path)
-
-
-@dataclass(frozen=True, slots=True)
-class _Flanks:
-    """The tooth sides of the gear as it is; `depth` missing and `made` too much, (teeth, 2, rows, fillet + flank) mm."""
-
-    nodes: ProfileNodes
-    depth: Floats
-    made: Floats
-
-    @classmethod
-    def of(cls, measured: MeasuredGear, wear: Wear) -> _Flanks:
-        grid, loop = measured.cells.grid, measured.loop
-        surface = smooth_surface(wear, grid, measured.noise, None if loop is None else loop.covariance)
-        depth = without_added_metal(without_broken(surface.depth, measured.broken, grid), wear.side_maps.area)
-        return cls(ProfileNodes.of(grid, PARTS), depth, side_fields(measured, put_back(measured), wear).made)
-
-    def profiles(self, field: Floats | None = None) -> ToothProfiles:
-        """With so much more metal on them, mm."""
-        return worn_profiles(self.nodes, self.depth, self.made if field is None else self.made + field)
+    return ContactNumbers.of(mesh_of_scanned(design, gear, in_order(sides.profiles(field)), side), path)
 
 
 def ways_to_read(measured: MeasuredGear, wear: Wear) -> list[tuple[ReadOtherwise, Floats]]:
@@ -283,4 +285,4 @@ def _as_they_lie(measured: MeasuredGear, wear: Wear) -> Floats:
     grid, sheets = measured.cells.grid, wear.side_maps
     untold: Bools = np.asarray(~wear.mask.any(axis=(2, 3)), dtype=np.bool_)
     untold[:, [side.index for side in Side if side not in measured.worn_sides]] = False
-    return on_flanks(np.where(untold, flank_levels(sheets.deviation, sheets.fillet), 0.0), grid)
+    return grid.sides(grid.on_flanks(np.where(untold, flank_levels(sheets.deviation, sheets.fillet), 0.0)))

@@ -155,7 +155,7 @@ def side_fields(measured: MeasuredGear, effects: Iterable[PutBack], wear: Wear |
     if loop is None:
         return SideFields(made, taken, raw)
     if wear is not None:
-        made = made + on_flanks(_counted_from(measured, wear), grid)
+        made = made + grid.sides(grid.on_flanks(_counted_from(measured, wear)))
     if not (loop.effects or loop.patterns or loop.form):
         return SideFields(made, taken, raw)
     made = made + loop.deviation(points, MADE).reshape(shape)  # with what is no finding: the wear does not hold it either
@@ -191,13 +191,6 @@ def flank_levels(heights: Floats, fillet: int) -> Floats:
     levels = np.zeros(known.shape)
     levels[known] = np.nanmedian(flank[known], axis=1)
     return levels
-
-
-def on_flanks(levels: Floats, grid: CellGrid) -> Floats:
-    """Levels of flanks, (teeth, 2), all over them: (teeth, 2, rows, fillet + flank)."""
-    field = np.zeros(grid.side_shape)
-    field[..., grid.fillet :] = levels[..., None, None]
-    return field
 
 
 def pattern_fields(measured: MeasuredGear) -> tuple[Floats, Floats]:

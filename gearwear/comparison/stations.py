@@ -14,7 +14,7 @@ import numpy as np
 from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
 from gearwear.comparison.closing import measure
 from gearwear.comparison.consequences import Change, meshing_changes, wear_changes
-from gearwear.comparison.contact_readings import ContactNumbers, OtherReadings, contact_limits, other_readings
+from gearwear.comparison.contact_readings import ContactNumbers, OtherReadings, ReadGear, contact_limits, other_readings
 from gearwear.comparison.contributions import PutBack, SideFields, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.comparison.notes import in_accord, notes_of
@@ -35,7 +35,7 @@ from gearwear.inspection.settings import Settings
 from gearwear.loaded.steel import Material
 from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.contact_result import ContactResult
-from gearwear.meshing.exact import exact_meshing
+from gearwear.meshing.exact import ExactMeshing, exact_meshing
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.slices import common_width
@@ -131,7 +131,10 @@ def compare(
     wear, wear_before, *before_contact = each([*calls, *early])
     progress("worn solid")
     lost = Lost.of(scanned, wear, wear_before, DRAWS if design.pair is not None else 0)
-    with beside([*_apart_from_contact(scanned, lost), *late]) as others:
+    exact = None
+    if design.pair is not None:
+        exact = exact_meshing(design.gears["pinion"], design.gears["gear"], design.centre_distance)
+    with beside([*_apart_from_contact(scanned, lost, exact), *late]) as others:
         measured, points, run = scanned.measured, scanned.as_made_points, Run.of(scanned, lost)
         met = None if design.pair is None else _against_mate(design, scanned, lost, run, points, ahead, progress)
         law = None if met is None else met.law
@@ -141,7 +144,7 @@ def compare(
     inspected, remarks = (*before_contact, *beside_contact)
     most = thickness.below_drawing()
     thinner = None if most is None else SectionLoss(most.value, most.tooth, most.at_z)
-    pair = None if met is None else _pair(design, met, thickness, thinner, read)
+    pair = None if met is None or exact is None else _pair(design, exact, met, thickness, thinner, read)
     measured = in_accord(measured, wear, scanned.unworn is not None)
     return Results(
         measured=measured,
@@ -251,13 +254,12 @@ class Lost:
         """With so many surfaces drawn from what is known of the worn one."""
         measured, grid = scanned.measured, scanned.measured.cells.grid
         effects, loop = put_back(measured), measured.loop
-        covariance = None if loop is None else loop.covariance
-        surface = smooth_surface(wear, grid, scanned.scatter, covariance, draws)
+        surface = _smooth(measured, wear, scanned.scatter, draws)
         worn = worn_profiles(ProfileNodes.of(grid), without_added_metal(surface.depth, wear.side_maps.area))
         return cls(wear, before_loop, effects, loop is not None and bool(effects or loop.patterns), surface, worn)
 
 
-def _apart_from_contact(scanned: Scanned, lost: Lost) -> list[Callable[[], Any]]:
+def _apart_from_contact(scanned: Scanned, lost: Lost, exact: ExactMeshing | None) -> list[Callable[[], Any]]:
     """Calls that need neither the contact nor one another, the longest first: solids, thickness with what the effects change of it, what they change of
     the wear, and the wear with other sides worn throughout."""
     measured, unworn = scanned.measured, scanned.unworn
@@ -272,7 +274,7 @@ def _apart_from_contact(scanned: Scanned, lost: Lost) -> list[Callable[[], Any]]
         else partial(
             wear_changes, measured, left_in, scanned.as_made, scanned.scatter, quick, lost.wear, lost.before_loop, unworn
         ),
-        partial(_otherwise, scanned, lost),
+        partial(_otherwise, scanned, lost, exact),
     ]
 
 
@@ -325,15 +327,23 @@ def _against_mate(
     return Met(contact, spread, loaded, law, ran, changes)
 
 
-def _otherwise(scanned: Scanned, lost: Lost) -> tuple[tuple[tuple[float, float], ...], OtherReadings]:
+def _otherwise(scanned: Scanned, lost: Lost, exact: ExactMeshing | None) -> tuple[tuple[tuple[float, float], ...], OtherReadings]:
     """Worn volume and its standard deviation with other sides worn throughout, mm³, and what the scan leaves open of the contact."""
-    measured, gears = scanned.measured, scanned.measured.undecided if scanned.unworn is None else ()
+    measured, unworn_seen = scanned.measured, scanned.unworn is not None
+    gears = () if unworn_seen else measured.undecided
     wears = [find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone) for gear in gears]
-    read, design = OtherReadings(), measured.design
-    if design.pair is not None:
-        path = exact_meshing(design.gears["pinion"], design.gears["gear"], design.centre_distance).path
-        read = other_readings(design, measured, lost.wear, list(zip(gears, wears, strict=True)), path)
+    read = OtherReadings()
+    if exact is not None:
+        told = ReadGear(measured, lost.wear, lost.surface.depth, unworn_seen)
+        others = [ReadGear(gear, wear, _smooth(gear, wear, gear.noise).depth) for gear, wear in zip(gears, wears, strict=True)]
+        read = other_readings(measured.design, told, others, exact.path)
     return tuple((wear.volume, wear.volume_std) for wear in wears), read
+
+
+def _smooth(measured: MeasuredGear, wear: Wear, scatter: float, draws: int = 0) -> WornSurface:
+    """The worn surface, smooth, and so many drawn from what is known of it."""
+    covariance = None if measured.loop is None else measured.loop.covariance
+    return smooth_surface(wear, measured.cells.grid, scatter, covariance, draws)
 
 
 def _remarks(measured: MeasuredGear) -> tuple[str, ...]:
@@ -412,14 +422,15 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     return PlainBoolean(removed, gear.volume - user.volume, pieces)
 
 
-def _pair(design: Design, met: Met, thickness: SectionThickness, thinner: SectionLoss | None, read: OtherReadings) -> PairResult:
+def _pair(
+    design: Design, exact: ExactMeshing, met: Met, thickness: SectionThickness, thinner: SectionLoss | None, read: OtherReadings
+) -> PairResult:
     pair, contact = design.pair, met.contact
     assert pair is not None
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
     worst = max([0.0, *(tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen)])
     play = contact.backlash_min.value, contact.backlash_max.value
     ring = gear.spec.internal
-    exact = exact_meshing(pinion, gear, centre)
     return PairResult(
         design=exact,
         published=None if ring else published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),

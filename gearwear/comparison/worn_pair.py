@@ -31,6 +31,38 @@ POSITIONS, PARTS = 34, 4
 
 
 @dataclass(frozen=True, slots=True)
+class ToothSides:
+    """The tooth sides of the scanned gear for contact.
+
+    Parameters
+    ----------
+    nodes : ProfileNodes
+    area : (columns,) float
+        Of the cells, mm².
+    depth, made : (teeth, 2, rows, fillet + flank) float
+        What is missing, and too much as it was made, mm.
+    """
+
+    nodes: ProfileNodes
+    area: Floats
+    depth: Floats
+    made: Floats
+
+    @classmethod
+    def of(cls, grid: CellGrid, depth: Floats, area: Floats, made: Floats) -> ToothSides:
+        """Metal that was not made so was not put on."""
+        return cls(ProfileNodes.of(grid, PARTS), area, without_added_metal(depth, area), made)
+
+    def lacking(self, depth: Floats) -> ToothSides:
+        """The same with another depth missing, mm."""
+        return replace(self, depth=without_added_metal(depth, self.area))
+
+    def profiles(self, added: Floats | float = 0.0) -> ToothProfiles:
+        """With so much more metal on them, mm."""
+        return worn_profiles(self.nodes, self.depth, self.made + added)
+
+
+@dataclass(frozen=True, slots=True)
 class RunningGear:
     """The scanned gear for contact.
 
@@ -57,15 +89,9 @@ class RunningGear:
     @classmethod
     def of(cls, grid: CellGrid, surface: WornSurface, area: Floats, fields: SideFields) -> RunningGear:
         """From the worn surface, the area of its cells (columns,) in mm², and what the effects do to it."""
-        depth = without_added_metal(surface.depth, area)
-
-        nodes = ProfileNodes.of(grid, PARTS)
-
-        def profiles(worn: Floats, added: Floats) -> ToothProfiles:
-            return worn_profiles(nodes, worn, fields.made + added)
-
-        nothing = np.zeros_like(depth)
-        present = profiles(depth, nothing)
+        sides = ToothSides.of(grid, surface.depth, area, fields.made)
+        nothing = np.zeros_like(sides.depth)
+        present = sides.profiles()
         random = np.random.default_rng(len(fields.unsure))
         sizes = random.normal(size=(len(surface.draws), len(fields.unsure)))
         effects_off = np.array(
@@ -74,15 +100,15 @@ class RunningGear:
         fields_back = (fields.raw, *fields.taken.values()) if fields.raw.any() else ()
 
         def scattered(surfaces: Floats, off: Floats) -> tuple[ToothProfiles, ...]:
-            return tuple(profiles(without_added_metal(depth, area), added) for depth, added in zip(surfaces, off, strict=True))
+            return tuple(sides.lacking(depth).profiles(added) for depth, added in zip(surfaces, off, strict=True))
 
         other = np.roll(np.arange(len(sizes)), -1)
         return cls(
             present,
-            tuple(profiles(depth, field) if field.any() else present for field in fields_back),
+            tuple(sides.profiles(field) if field.any() else present for field in fields_back),
             scattered(surface.draws, effects_off),
             scattered(surface.draws + surface.draws[other] - surface.depth, effects_off + effects_off[other]),
-            profiles(nothing, nothing),
+            replace(sides, depth=nothing).profiles(),
         )
 
     def against_mate(self, design: Design, measured: MeasuredGear, side: Side) -> tuple[ContactResult, ContactSpread]:

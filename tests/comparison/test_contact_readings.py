@@ -15,12 +15,14 @@ from gearwear.comparison.contact_readings import (
     ContactNumbers,
     ContactReading,
     OtherReadings,
+    ReadGear,
     ReadOtherwise,
     contact_limits,
+    numbers_with,
     other_readings,
     ways_to_read,
 )
-from gearwear.comparison.contributions import flank_levels, on_flanks, pattern_fields, put_back, side_fields
+from gearwear.comparison.contributions import flank_levels, pattern_fields, put_back, side_fields
 from gearwear.comparison.notes import contact_note
 from gearwear.comparison.open_sizes import size_limits
 from gearwear.comparison.results import Results
@@ -33,8 +35,10 @@ from gearwear.diagnose.pattern import Pattern
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.spread import ContactSpread
 from gearwear.report.records.comparison import document
-from gearwear.report.words.contact import SHORT, between
+from gearwear.report.words.contact import SHORT
+from gearwear.report.words.numbers import between
 from gearwear.report.words.verdict import key_figures
+from gearwear.wear.smooth import smooth_surface
 from tests.commands.doors import PAIR, scan_file
 from tests.meshing.test_contact_of_scans import true_profiles
 from tests.report.fake import fake_effect
@@ -91,8 +95,6 @@ def test_a_flank_lies_where_most_of_it_does():
     heights = np.full((1, 2, 1, 7), np.nan)
     heights[0, 0, 0] = [9.0, 9.0, 1.0, 1.0, 5.0, np.nan, 1.0]  # two columns of the fillet
     assert flank_levels(heights, 2).tolist() == [[1.0, 0.0]]
-    grid = SimpleNamespace(side_shape=heights.shape, fillet=2)
-    assert on_flanks(np.array([[1.0, 2.0]]), grid)[0, :, 0].tolist() == [[0, 0, 1, 1, 1, 1, 1], [0, 0, 2, 2, 2, 2, 2]]
 
 
 def sized(value: float, std: float, order: float | None = None):
@@ -195,6 +197,28 @@ class TestWays:
         assert ways_to_read(thin.measured, thin.wear.found) == []
 
 
+def smooth(measured, wear, scatter=None):
+    loop = measured.loop
+    noise = measured.noise if scatter is None else scatter
+    return smooth_surface(wear, measured.cells.grid, noise, None if loop is None else loop.covariance).depth
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("unworn_seen", [False, True], ids=["by the design", "by a scan before wear"])
+def test_read_as_it_is_told_the_contact_is_what_is_told(folder, unworn_seen):
+    """What is put on the flanks besides is put on those that were run: with a scan before wear they are counted from that."""
+    patch = (Patch(1, 1, 400.0, (74.0, 79.4), (2.0, 10.0)),)
+    recipe = Recipe(gear=WHEEL, jitter=1.0, effects=(THIN,), wear=patch).of_size(20_000)
+    files = scan_file(folder, f"told {unworn_seen}", recipe)[0]
+    before = scan_file(folder, "unworn", replace(recipe, wear=()), 3)[0] if unworn_seen else ()
+    results = compare(gw.read_design(PAIR), files, "gear", before=before, inspection=False)
+    measured, wear, pair = results.measured, results.wear.found, results.pair
+    scatter = float(np.hypot(measured.noise, measured.noise))
+    told = ReadGear(measured, wear, smooth(measured, wear, scatter if unworn_seen else None), unworn_seen)
+    again = numbers_with(results.design, measured, told.sides(), 0.0, wear.drive_side, pair.design.path)
+    np.testing.assert_allclose(again.values, ContactNumbers.of(pair.contact, pair.design.path).values, atol=1e-12)
+
+
 def with_form(measured, effect):
     return replace(measured, loop=replace(measured.loop, form=(effect,)))
 
@@ -213,9 +237,9 @@ def test_wear_is_counted_from_where_flanks_were_made(thin):
     levels = np.zeros((measured.gear.teeth, 2))
     levels[3, 1] = 0.030
     sheets = wear.side_maps
-    raised = replace(sheets, deviation=sheets.deviation - on_flanks(levels, measured.cells.grid))
+    raised = replace(sheets, deviation=sheets.deviation - measured.cells.grid.sides(measured.cells.grid.on_flanks(levels)))
     before, after = (side_fields(measured, put_back(measured), found).made for found in (wear, replace(wear, side_maps=raised)))
-    np.testing.assert_allclose(after - before, on_flanks(levels, measured.cells.grid), atol=1e-12)
+    np.testing.assert_allclose(after - before, measured.cells.grid.sides(measured.cells.grid.on_flanks(levels)), atol=1e-12)
 
 
 @pytest.mark.long
@@ -258,7 +282,7 @@ def test_thin_teeth_that_may_be_a_scanners_have_no_more_play_than_drawn(thin):
     (effect,) = (one for one in thin.loop.effects if one.name == "tooth_thickness")
     measured = replace(thin.measured, loop=replace(thin.loop, effects=(effect.or_one_of(["coating"]),)))
     wear, pair = thin.wear.found, thin.pair
-    read = other_readings(thin.design, measured, wear, (), pair.design.path)
+    read = other_readings(thin.design, ReadGear(measured, wear, smooth(measured, wear)), (), pair.design.path)
     limits = contact_limits(ContactNumbers.of(pair.contact, pair.design.path), read, pair.spread)
     assert limits.why == (ReadOtherwise.EITHER,)
     opened = replace(pair, limits=limits)
