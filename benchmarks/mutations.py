@@ -109,6 +109,7 @@ MUTATIONS = [
         ("wear/limits.py", "FAINT = 1.5", "FAINT = 3.5", "wear/test_limits.py"),
         ("wear/limits.py", "FAINT = 1.5", "FAINT = 0.0", "wear/test_limits.py"),
         ("wear/limits.py", "return lost + NORMAL_95 *", "return lost + 8.0 *", "wear/test_limits.py"),
+        ("wear/limits.py", "float(np.concatenate(strips).max(initial=-np.inf))", "float(np.nanmax(typical))", "wear/test_limits.py"),
         ("wear/thickness.py", "min(to_end / width, 0.5)", "0.0", "wear/test_thickness.py"),
         ("wear/thickness.py", "arc=self.arc + (made - mean)", "arc=self.arc", "wear/test_thickness.py"),
         ("placing/edges.py", "np.fmax(fall, fall - rise / run", "np.fmin(fall, fall - rise / run", "placing/test_edges.py"),

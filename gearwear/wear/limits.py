@@ -23,7 +23,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.diagnose.gram import Gram
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import SideMaps, own_spread, window_mean
-from gearwear.wear.own_level import typical_heights
+from gearwear.wear.own_level import strip_means, typical_heights
 from gearwear.wear.uncertainty import model_columns, noise_covariance, region_weights
 
 FOUND = 0.965
@@ -290,12 +290,14 @@ def even_depth(sheets: SideMaps, side: Side, as_made_std: tuple[float, float], t
     Notes
     -----
     Nothing slides at the pitch point, and what slides leaves the face where nothing carries: a place that lost nothing by sliding there is on every
-    flank. The highest cell of the side, in the median of the teeth, tells how low even that lies, rather less than more; below 1.96 standard
-    deviations of the level it is none.
+    flank. The highest strip over the face, or up the profile, in its mean of the median of the teeth, tells how low even that lies: a single cell is
+    high by chance. Below 1.96 standard deviations of the level it is none.
     """
     flank, seen = _of_side(sheets, side, toothed)
-    typical = typical_heights(flank[seen]) if seen.any() else flank[:0]
-    highest = float(np.nanmax(typical)) if np.isfinite(typical).any() else 0.0
+    typical = typical_heights(flank[seen]) if seen.any() else np.full(flank.shape[1:], np.nan)
+    strips = [means[often] for means, often in (strip_means(typical, axis) for axis in (0, 1))]
+    highest = float(np.concatenate(strips).max(initial=-np.inf))
+    highest = highest if math.isfinite(highest) else 0.0
     return -highest if -highest > NORMAL_95 * as_made_std[side.index] else 0.0
 
 

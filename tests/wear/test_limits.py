@@ -147,6 +147,17 @@ def test_the_even_part_of_a_loss_is_what_its_least_place_has_lost(even):
     assert even_part(sheets, frozenset({Side.LEFT}), (0.02, 0.02), GRID.toothed) == 0.0
 
 
+def test_how_low_the_least_place_lies_is_told_by_a_strip_and_not_by_a_cell():
+    """Scatter of the cells leaves the even loss where it is: the highest of many single cells would be several of its own deviations high."""
+    way = GRID.rolls(2)[1::2] / GEAR.reference_roll - 1.0
+    deviation = np.random.default_rng(5).normal(0.0, 0.006, GRID.count)
+    GRID.flank_shape(deviation)[:, Side.LEFT.index] -= 0.05 * np.abs(way) + 0.015
+    sheets = make_side_maps(bin_points(LOCATED, GRID).with_deviation(deviation))
+    depth = even_depth(sheets, Side.LEFT, (0.001, 0.001), GRID.toothed)
+    strip = 1.2533 * 0.006 / math.sqrt(GEAR.teeth * GRID.rows)  # of a mean of medians
+    assert abs(depth - 0.015 - 0.05 * np.abs(way).min()) < 3.0 * strip
+
+
 def test_a_loss_that_is_not_sure_is_in_the_range_with_what_its_doubt_leaves_open():
     """Three flanks, of which two are asked of: their sum and 1.96 standard deviations of it, correlated as they are."""
     lost, std = np.array([5.0, 1.0, 0.5]), np.array([0.3, 0.4, 0.2])
