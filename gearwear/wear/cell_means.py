@@ -8,14 +8,16 @@ import numpy as np
 from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets
+from gearwear.robust import scale_about
 from gearwear.wear.stiffness import AsStiff
 from gearwear.wear.surface import FEWEST_SEEN, SideSurface
 
 FEW, LONE = 3, 5.0
-"""Points of a cell that cannot outvote a stray among them; scatters of points by which one may lie off what is round it."""
+"""Points of a cell that cannot outvote a stray among them; scatters of points, or of the cells of a column, by which one may lie off what is round it."""
 
 At = tuple[int, int, slice, slice]
 """Tooth, side, rows and columns."""
@@ -112,13 +114,20 @@ class CommonSurface:
 
 def _strays(filled: Floats, cells: Cells, noise: float) -> Bools:
     """Cells that a surface must not bend to, (teeth, 2, rows, columns): of one or two points, or of a few that do not agree, farther off the cells
-    round them than these are from each other. Of so few nobody knows which are strays."""
+    round them than these are from each other. Of so few nobody knows which are strays.
+
+    Both are told beyond what the flanks of a side have in common, for where wear is steep the cells round a stray lie far apart; how far such cells
+    scatter in a column is allowed to them.
+    """
     count, deviation, scatter = (cells.grid.sides(values) for values in (cells.count, cells.points.deviation, cells.scatter))
+    common = np.median(filled, axis=0)
+    beyond, own = filled - common, np.where(count > 0, deviation, np.nan) - common
     beside = np.ones((1, 1, 3, 3), dtype=np.bool_)
     beside[..., 1, 1] = False
-    low = ndimage.minimum_filter(filled, footprint=beside, mode="constant", cval=np.inf)
-    high = ndimage.maximum_filter(filled, footprint=beside, mode="constant", cval=-np.inf)
-    off = np.maximum(low - np.nan_to_num(deviation), np.nan_to_num(deviation) - high) > high - low + LONE * noise
+    low = ndimage.minimum_filter(beyond, footprint=beside, mode="constant", cval=np.inf)
+    high = ndimage.maximum_filter(beyond, footprint=beside, mode="constant", cval=-np.inf)
+    usual = np.fmax(np.apply_along_axis(scale_about, 1, np.moveaxis(own, 0, 2).reshape(len(Side), -1, own.shape[3])), noise)
+    off = np.fmax(low - own, own - high) > high - low + LONE * usual[:, None]
     apart = (count < FEW) | ((count <= FEW) & (np.nan_to_num(scatter) > LONE * noise))
     if cells.far is not None:  # where pits are known to be, lone points are none
         apart &= ~cells.grid.sides(cells.far.hung).any(axis=(2, 3), keepdims=True)

@@ -17,6 +17,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, make_side_maps, window_mean, worn_cells
+from gearwear.robust import NORMAL_MAD
 
 HIGHEST = 0.25
 """Share of a flank, its highest places, whose lower end is its level: of wear in one place that knows little until it takes most of the flank."""
@@ -131,19 +132,17 @@ def _strips(above: Floats, flank: Floats, axis: int) -> tuple[Floats, Floats]:
     (teeth, rows, columns) of the side scatter there: of a median of that many."""
     mean, often = strip_means(above, axis)
     own, _ = strip_means(flank, axis + 1)
-    told = np.isfinite(flank).any(axis=axis + 1)
-    number = np.maximum(told.sum(axis=0), 2)
-    centre = np.where(told, own, 0.0).sum(axis=0) / number
-    variance = np.where(told, (own - centre) ** 2, 0.0).sum(axis=0) / (number - 1)
-    return mean[often], np.sqrt(0.5 * math.pi * variance / number)[often]
+    std = typical_std(np.where(np.isfinite(flank).any(axis=axis + 1), own, np.nan))
+    return mean[often], std[often]
 
 
 def above_made(sheets: SideMaps, side: Side) -> Floats:
-    """How far the flanks of a side stand above the gear as made, and above the other side, in the median of the teeth, (rows, columns) mm; nan where most were
-    not seen."""
+    """How far the flanks of a side stand above the gear as made, and above the other side where that stands above it by more than chance, in the median
+    of the teeth, (rows, columns) mm; nan where most were not seen."""
     flank = np.where(sheets.seen, sheets.deviation, np.nan)[..., sheets.fillet :]
-    own, other = (typical_heights(flank[:, one.index]) for one in (side, side.opposite))
-    return np.asarray(own - np.maximum(np.nan_to_num(other), 0.0))
+    own, other = (flank[:, one.index] for one in (side, side.opposite))
+    level = typical_heights(other)
+    return np.asarray(typical_heights(own) - np.where(level > NORMAL_95 * typical_std(other), level, 0.0))
 
 
 def highest_strip(above: Floats) -> float:
@@ -164,3 +163,11 @@ def typical_heights(heights: Floats) -> Floats:
     known = np.isfinite(heights)
     median = np.nanmedian(np.where(known.any(axis=0), heights, 0.0), axis=0)
     return np.where(known.mean(axis=0) >= SEEN, median, np.nan)
+
+
+def typical_std(heights: Floats) -> Floats:
+    """Standard deviation of the median of the teeth, of heights (teeth, …): by half of the teeth, for one that is far off says nothing of it; 0 where none was seen."""
+    known = np.isfinite(heights)
+    inside = np.where(known.any(axis=0), heights, 0.0)
+    off = np.nanmedian(np.abs(inside - np.nanmedian(inside, axis=0)), axis=0)
+    return np.asarray(NORMAL_MAD * off * np.sqrt(0.5 * math.pi / np.maximum(known.sum(axis=0), 1)))

@@ -61,7 +61,7 @@ class WornLevel:
     height : float
         mm; wear is counted from there.
     low, high : float
-        Within what that lies where they may have a ridge (95 %), mm.
+        Within what that lies (95 %), mm: down to that beside the ridge they may have, up to where the profile goes on to at the pitch point.
     ridge : PitchRidge or None
     proud : (flank columns,) float
         How far the ridge stands above `height`, mm; 0 without one.
@@ -119,9 +119,14 @@ def worn_level(sheets: SideMaps, grid: CellGrid, loop: Loop, side: Side, highest
     # A strip beside the pitch point has lost something; a row that has lost nothing is seen by itself.
     beside = max(highest_strip(above - hump.height * hump.shape), hump.level)
     wide = least * scatter * hump.level_std if free > 0 else math.inf
+    # The highest strip is as wide as a column: what goes on to its middle may be higher.
+    top = highest
+    if free > 0:
+        reach = float(stdtrit(plain.free, SURE)) * max(math.sqrt(plain.left / plain.free), std)
+        top = max(plain.level + reach * plain.level_std, highest)
     low, high = (min(max(level, 0.0), highest) for level in (beside - wide, beside + wide))
     if math.sqrt(max(plain.left - hump.left, 0.0)) <= least * scatter:
-        return WornLevel(highest, low, highest, None, nothing)
+        return WornLevel(highest, low, top, None, nothing)
     height = beside if beside > NORMAL_95 * math.hypot(std, scatter * hump.level_std) else 0.0
     height = min(height, highest)
     proud = np.where(hump.shape > FOOT, np.maximum(profile - height, 0.0), 0.0)

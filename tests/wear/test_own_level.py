@@ -1,5 +1,6 @@
 """Worn flanks of teeth made thinner and thicker, under an index for each tooth: what the generator took away is asked back."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +13,7 @@ from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.made_height import MadeHeight
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import make_side_maps
-from gearwear.wear.own_level import at_own_level, standing_proud
+from gearwear.wear.own_level import above_made, at_own_level, standing_proud
 from gearwear.wear.regions import find_wear
 from tests.placing.cells import every_cell, flanks_of, with_flanks
 from tests.placing.placing import designed, true_pose
@@ -102,6 +103,26 @@ def test_what_may_be_chance_and_what_roots_share_is_not_proud():
     assert standing_proud(sliding(0.02), as_known_to(0.012), LEFT) == (0.0, 0.0)
     assert standing_proud(sliding(0.0, shared=0.05), as_known_to(0.004), LEFT) == (0.0, 0.0)
     assert standing_proud(sliding(-0.02), as_known_to(0.004), LEFT) == (0.0, 0.0)
+
+
+def test_a_tooth_that_is_worn_far_deeper_leaves_the_level_of_all_where_it_is():
+    """As high as without it: half of a millimetre off one tooth of twelve is no doubt of the median of them."""
+    sheets = sliding(0.02)
+    deep = sheets.deviation.copy()
+    deep[3, Side.LEFT.index] -= 0.5
+    level, known = as_known_to(0.004), standing_proud(sheets, as_known_to(0.004), LEFT)[0]
+    assert standing_proud(replace(sheets, deviation=deep), level, LEFT)[0] == pytest.approx(known, abs=0.001)
+
+
+def test_chance_on_the_other_side_takes_nothing_off_a_worn_one():
+    """Its cells scatter up as often as down: of the mean over a strip nothing is left of them."""
+    scatter = np.random.default_rng(2)
+    sheets = sliding(0.04)
+    flanks = np.zeros(sheets.deviation.shape)
+    flanks[:, Side.LEFT.index] = 0.04
+    flanks[:, Side.RIGHT.index] = scatter.normal(0.0, 0.008, flanks[:, 1].shape)
+    above = above_made(replace(sheets, deviation=flanks), Side.LEFT)
+    assert np.nanmean(above) == pytest.approx(0.04, abs=0.0003)
 
 
 def test_where_both_sides_are_worn_or_no_loop_was_closed_nothing_is_said():

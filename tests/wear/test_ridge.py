@@ -73,14 +73,15 @@ def test_thicker_teeth_are_told_beside_a_ridge(size):
 @pytest.mark.parametrize("power", [0.5, 0.75, 1.0])
 @pytest.mark.parametrize("size", [0.7, 0.9, 1.4])
 def test_what_comes_to_a_tip_where_nothing_slides_is_no_ridge(size, power):
-    """The level is that of the highest strip."""
+    """The level is that of the highest strip; the teeth as they were cut are higher than its mean, and within what the level may be."""
     cells, profile = put_on(0.03, power=power, size=size)
     level = told(cells)
     assert level.ridge is None and not level.proud.any()
-    assert level.height == level.high == standing_proud(make_side_maps(cells), loop(), LEFT)[0]
+    assert level.height == standing_proud(make_side_maps(cells), loop(), LEFT)[0]
     assert level.height == pytest.approx(profile.max(), abs=0.001)
     if size < 1.0:
         assert 0.65 * level.height < level.low <= level.height
+        assert 0.03 < level.high < 0.034
 
 
 @pytest.mark.parametrize("size", [1.4, 1.8])
@@ -90,7 +91,7 @@ def test_of_few_columns_nothing_is_told_and_all_is_open(size):
     assert cells.grid.flank <= 7
     level = told(cells)
     assert level.ridge is None
-    assert (level.low, level.high) == (0.0, level.height)
+    assert level.low == 0.0 and level.high >= level.height
     assert level.height == pytest.approx(profile.max(), abs=0.001)
 
 

@@ -7,10 +7,13 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.registration import stray_limit
+from gearwear.placing.side_maps import infill, make_side_maps
 from gearwear.wear.breakage import find_fractures
+from gearwear.wear.cell_means import CellMeans
 from gearwear.wear.inside_tooth import depth_inside
 from gearwear.wear.regions import find_wear
 from gearwear.wear.volume import _deepest_pit
+from tests.placing.cells import every_cell, flanks_of, with_flanks
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
 from tests.wear.sections import section_thickness
@@ -119,3 +122,24 @@ def test_a_pit_stands_out_the_same_whichever_end_is_up(around):
         one = _deepest_pit(deeper, count, scatter, 0.006, 0.0, around, inside)
         other = _deepest_pit(deeper[::-1], count[::-1], scatter, 0.006, 0.0, around, inside[::-1])
         assert one == pytest.approx(other, rel=1e-9)
+
+
+@pytest.mark.parametrize("row", [0, 6, -1])
+def test_a_stray_beside_steep_wear_is_none_of_the_surface(row):
+    """Of cells of one point on flanks that have lost 0.15 mm at their form circle and nothing at the pitch point, each tooth otherwise: the point that lies
+    0.12 mm too deep next to the steep columns does not stand out of the cells round it, but of what all flanks have there."""
+    cells, random = every_cell(GEAR, 0.9, times=1), np.random.default_rng(9)
+    grid, flank = cells.grid, flanks_of(cells)
+    way = np.clip(1.0 - grid.rolls(2)[1::2] / GEAR.reference_roll, 0.0, None)
+    share = random.uniform(0.7, 1.3, (GEAR.teeth, 1, 1))
+    flank[:, Side.LEFT.index] = -0.15 * share * (way / way.max()) ** 3
+    flank += random.normal(0.0, 0.003, flank.shape)
+    column = int(np.argmin(way > 0.3 * way.max()))
+    assert flank[4, Side.LEFT.index, row, column - 2] < -0.05
+    flank[4, Side.LEFT.index, row, column] -= 0.12
+    put = with_flanks(cells, flank)
+    sheets = make_side_maps(put)
+    means = CellMeans.of(put, sheets, infill(sheets), 0.003, None, np.array([[4, Side.LEFT.index]]))
+    left_out = ~means.held[..., grid.fillet :]
+    assert left_out[4, Side.LEFT.index, row, column]
+    assert left_out.sum() == 1
