@@ -63,6 +63,22 @@ def law_shapes(roll: Floats, context: Context) -> Floats:
     return np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
 
 
+def laws_of_wear(cells: Cells, context: Context, worn: frozenset[Side]) -> list[tuple[Floats, Ints]]:
+    """Losses by the laws of wear on some sides, as `wear_columns`: by sliding; and evenly, or on both sides alike, or on one as the other by sliding."""
+    law, sides = wear_columns(cells, context, worn)
+    even, on = on_worn(cells, np.ones((len(law), 1)), worn)
+    laws = [(law, sides)]
+    if len(worn) == 1:
+        return [*laws, (even, on)]  # all over alike: a thinner tooth, but for where fillets stand
+    left, right = (law[:, sides == int(side)] for side in Side)  # both may have lost the same
+    laws.append((left + right, np.zeros(left.shape[1], np.int64)))
+    # Or one has lost evenly what the other has lost by sliding: of both evenly it would be a thinner tooth.
+    for side in Side:
+        slides, other = sides == int(side), on != int(side)
+        laws.append((np.hstack([law[:, slides], even[:, other]]), np.concatenate([sides[slides], on[other]])))
+    return laws
+
+
 def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> list[tuple[Floats, Ints]]:
     """Any loss that is least at the pitch point, where nothing slides, as `wear_columns`: straight between the edges of the columns of cells.
 

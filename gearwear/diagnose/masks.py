@@ -11,8 +11,10 @@ from gearwear.design.side import Side
 from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, TIP
 from gearwear.design.twist import section_angle
 from gearwear.diagnose.active_face import ActiveFace
+from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
+from gearwear.placing.edges import rounded_ends
 from gearwear.placing.low_tips import OFF
 from gearwear.placing.side_maps import between, make_side_maps, rim, window_mean, worn_cells
 from gearwear.robust import median_scale, tukey_weight
@@ -154,3 +156,12 @@ def _stretch(cells: Cells, number: int) -> Ints:
     else:
         share = (np.hypot(position[:, 0], position[:, 1]) - gear.root_radius) / (gear.tip_radius - gear.root_radius)
     return np.clip((share * number).astype(np.int64), 0, number - 1)
+
+
+def tell_of_wear(cells: Cells, context: Context, noise: float) -> Bools:
+    """Cells that tell whether a side is worn throughout, (m,). Where on the columns next to the form circle contact begins, and wear with it, no drawing of one gear tells."""
+    points, way, edge = cells.points, cells.grid.gear.orientation, cells.grid.roll_edges[1]
+    first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
+    first |= (points.surface == FILLET) & above_last_fillet_edge(cells)
+    believed: Bools = sound_cells(cells, frozenset(), context.fillets_told) & ~first & ~rounded_ends(cells, noise)
+    return believed

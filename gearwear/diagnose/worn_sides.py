@@ -11,9 +11,10 @@ hypothesis leave out what speaks against it.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from scipy.special import chdtri
@@ -21,17 +22,18 @@ from scipy.special import chdtri
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
-from gearwear.design.surface import FILLET, FLANK
+from gearwear.design.surface import FLANK
 from gearwear.design.tolerance import profile_form_tolerance
 from gearwear.diagnose.columns import CellColumns, cuts_among
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary
-from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.few_cells import leaves_teeth_out, on_few_cells
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.flank_columns import (
     any_profile,
     any_wear_columns,
+    laws_of_wear,
     loss_by_tooth,
     made_profiles,
     on_each_side,
@@ -40,18 +42,19 @@ from gearwear.diagnose.flank_columns import (
 )
 from gearwear.diagnose.flanks_differ import differ_more
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.masks import above_last_fillet_edge, sound_cells
+from gearwear.diagnose.masks import tell_of_wear
 from gearwear.diagnose.pitch_point import as_slid, likeliest
 from gearwear.diagnose.robust_fit import SETTLED, Robust, Shares, robust_fit
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Around, Problem, exchange, free_penalty
 from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
-from gearwear.placing.cells import Cells
-from gearwear.placing.edges import rounded_ends
 from gearwear.processors import each
 
 REMEMBERED = 8
 """Models whose columns are kept; numerical."""
+
+_Law = tuple[frozenset[Side], Floats, Ints]
+"""Sides that are worn, losses that they may have, (m, k), and the side of each of these, (k,)."""
 
 
 def side_costs(
@@ -85,40 +88,40 @@ def side_costs(
     """
     model = problem.with_offsets(model)
     teeth_left_out = leaves_teeth_out(fit, look)
-    fit, sound = on_few_cells(fit, _believed(fit.cells, problem.context, noise), noise, problem.context, look)
+    fit, sound = on_few_cells(fit, tell_of_wear(fit.cells, problem.context, noise), noise, problem.context, look)
     if teeth_left_out:  # what each tooth has of its own pays for the teeth that are left
         problem = fit.problem(problem.unit, problem.context, problem.always)
     scan = _Scan.of(fit, problem, model, noise, sound)
     shared, price = made_profiles(fit.cells)
     by_side = on_each_side(fit.cells, shared), np.tile(price, len(Side))
     profiles = (shared[:, :0], price[:0]), (shared, price), by_side
-    plain, alike, apart = each([partial(scan.made, model, *profile) for profile in profiles])
+    answers = [sides for sides in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)) if sides not in ruled_out]
+    # What was lost by a law is asked beside what was made: it does not depend on that.
+    made_calls, laws = [partial(scan.made, model, *profile) for profile in profiles], scan.laws(answers)
+    found: list[Any] = each([*made_calls, *scan.asked(model, laws)])
+    (plain, alike, apart), lost = found[: len(profiles)], _of_sides(laws, found[len(profiles) :])
     made = min(plain.cost, alike.cost)
     unworn = min(made, apart.cost + scan.forms_apart(apart.profile))
     beside = dict[Side, tuple[Floats, float]]()
     for side in Side if apart.cost < made else ():
+        if frozenset({side}) in ruled_out:
+            continue
         others = apart.needed[apart.needed // shared.shape[1] == side.opposite.index]
         if len(others):
             of_others = np.where(fit.cells.points.side == int(side), 0.0, apart.profile)
             beside[side] = by_side[0][:, others], _price(by_side[1][others]) + scan.forms_apart(of_others)
-    tenable = scan.tenable(model, apart.cost < made, unworn, beside, ruled_out)
+    tenable = scan.tenable(model, lost, apart.cost < made, unworn, beside)
     other, pitch = scan.pitch_point(model), dict[frozenset[Side], float]()
     if other is not None:
         roll, paid = other
-        for sides, least in scan.at_pitch(roll).tenable(model, apart.cost < made, unworn, beside, ruled_out).items():
+        there = scan.at_pitch(roll)
+        laws = there.laws(answers)
+        lost = _of_sides(laws, each(there.asked(model, laws)))
+        for sides, least in there.tenable(model, lost, apart.cost < made, unworn, beside).items():
             if sides not in tenable or least.cost + paid < tenable[sides].cost:
                 tenable[sides], pitch[sides] = replace(least, cost=least.cost + paid), roll
     uncommon = tenable[frozenset(Side)].uncommon if frozenset(Side) in tenable else 0.0
     return SideCosts({NO_SIDE: unworn} | {sides: least.cost for sides, least in tenable.items()}, made, uncommon, pitch)
-
-
-def _believed(cells: Cells, context: Context, noise: float) -> Bools:
-    """Cells that tell of wear throughout, (m,). Where on the columns next to the form circle contact begins, and wear with it, no drawing of one gear tells."""
-    points, way, edge = cells.points, cells.grid.gear.orientation, cells.grid.roll_edges[1]
-    first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
-    first |= (points.surface == FILLET) & above_last_fillet_edge(cells)
-    believed: Bools = sound_cells(cells, NO_SIDE, context.fillets_told) & ~first & ~rounded_ends(cells, noise)
-    return believed
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,26 +240,35 @@ class _Scan:
         result[self.rows] = values
         return result
 
+    def laws(self, answers: Sequence[frozenset[Side]]) -> list[_Law]:
+        """What some sides, each of `answers`, may have lost by the laws of wear."""
+        return [(worn, *law) for worn in answers for law in laws_of_wear(self.fit.cells, self.problem.context, worn)]
+
+    def asked(self, model: Model, laws: Sequence[_Law]) -> list[Callable[[], list[_Loss]]]:
+        """Calls for the losses of some shapes, begun with a model."""
+        return [partial(self.losses, model, *law) for law in laws]
+
     def tenable(
         self,
         model: Model,
+        lost: Mapping[frozenset[Side], list[_Loss]],
         any_shape: bool,
         unworn: float,
         beside: Mapping[Side, tuple[Floats, float]],
-        ruled_out: frozenset[frozenset[Side]],
     ) -> dict[frozenset[Side], _Worn]:
-        """The least cost of each hypothesis that is tenable: sides worn, and one side worn beside a form of the other (columns (m, k), and its price)."""
-        answers = [
-            sides for sides in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)) if sides not in ruled_out
-        ]
-        tried = [partial(self.least_worn_cost, model, sides, any_shape, unworn) for sides in answers]
-        for side, (made, paid) in beside.items():
-            # One side worn, and the other cut to a profile of its own.
-            if frozenset({side}) not in ruled_out:
-                answers.append(frozenset({side}))
-                tried.append(partial(self.beside(made).slid_cost, model, side, unworn, paid))
+        """The least cost of each hypothesis that is tenable: sides worn, by what they `lost` by a law or, on one side, in any shape; and one side worn
+        beside a form of the other (columns (m, k), and its price)."""
+        # As free as the profile that it may have been made with, but for what wear never does.
+        alone, any_wear = [worn for worn in lost if len(worn) == 1 and any_shape], partial(any_wear_columns, self.fit.cells)
+        free = [(worn, *law) for worn in alone for law in any_wear(self.problem.context, worn)]
+        # Or one side worn, and the other cut to a profile of its own.
+        slid = [partial(self.beside(made).slid_cost, model, side, unworn, paid) for side, (made, paid) in beside.items()]
+        found: list[Any] = each([*self.asked(model, free), *slid])
+        of_no_shape = _of_sides(free, found[: len(free)])
+        answers = [(worn, self._least_worn(worn, losses, of_no_shape.get(worn, []), unworn)) for worn, losses in lost.items()]
+        answers += [(frozenset({side}), least) for side, least in zip(beside, found[len(free) :], strict=True)]
         tenable = dict[frozenset[Side], _Worn]()
-        for sides, least in zip(answers, each(tried), strict=True):
+        for sides, least in answers:
             if least is not None and (sides not in tenable or least.cost < tenable[sides].cost):
                 tenable[sides] = least
         return tenable
@@ -348,33 +360,16 @@ class _Scan:
         flank_class = self.fit.cells.grid.gear.tolerance.flank_class
         return (NORMAL_95 * min(self._in_tolerance(lost, side, flank_class) for side in Side)) ** 2
 
-    def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool, unworn: float) -> _Worn | None:
+    def _least_worn(self, worn: frozenset[Side], losses: list[_Loss], of_no_shape: list[_Loss], unworn: float) -> _Worn | None:
         """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
 
         A loss of no shape that wear has by itself, which all teeth have alike, costs no less than `unworn` where flanks of the gear's class may be cut
         with it, or where no load leaves it; and no loss of one side of a form that ground flanks have, where all are by chance alone cheaper.
         """
-        cells, context = self.fit.cells, self.problem.context
-        law, sides = wear_columns(cells, context, worn)
-        even, on = on_worn(cells, np.ones((len(law), 1)), worn)
-        shapes = [(law, sides)]
-        if len(worn) > 1:  # both may have lost the same
-            left, right = (law[:, sides == int(side)] for side in Side)
-            shapes.append((left + right, np.zeros(left.shape[1], np.int64)))
-            # Or one has lost evenly what the other has lost by sliding: of both evenly it would be a thinner tooth.
-            for side in Side:
-                slides, other = sides == int(side), on != int(side)
-                shapes.append((np.hstack([law[:, slides], even[:, other]]), np.concatenate([sides[slides], on[other]])))
-        else:
-            shapes.append((even, on))  # all over alike: a thinner tooth, but for where fillets stand
-        losses = [lost for law, on in shapes for lost in self.losses(model, worn, law, on)]
         if len(worn) > 1:
             both = min(losses, key=lambda lost: lost.cost, default=None)
             return None if both is None else _Worn(both.cost, self._uncommon(both))
         (side,) = worn
-        # As free as the profile that it may have been made with, but for what wear never does.
-        free = any_wear_columns(cells, context, worn) if any_shape else []
-        of_no_shape = [lost for law, on in free for lost in self.losses(model, worn, law, on)]
         costs = [self._or_as_cut(lost, side, lost.cost, unworn) for lost in of_no_shape]
         chance = all(lost.cost > unworn - rules().close for lost in (*losses, *of_no_shape))
         for lost in losses:
@@ -524,6 +519,14 @@ class _Scan:
         """The search beside some columns of a law, which are in every fit as the pose is."""
         with_law = replace(wide, pose=np.concatenate([wide.pose, lost]))
         return Problem(with_law, gram, self.problem.unit, self.problem.context, self.problem.always)
+
+
+def _of_sides(laws: Sequence[_Law], found: Sequence[list[_Loss]]) -> dict[frozenset[Side], list[_Loss]]:
+    """The losses found by some laws, by the sides that are worn."""
+    lost = dict[frozenset[Side], list[_Loss]]()
+    for (worn, _, _), losses in zip(laws, found, strict=True):
+        lost.setdefault(worn, []).extend(losses)
+    return lost
 
 
 def _least(costs: list[float]) -> _Worn | None:
