@@ -12,7 +12,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.comparison.stated import kept
 from gearwear.design.pair import Design
 from gearwear.design.quantity import at_least
-from gearwear.design.spec import Artefact, DatumSpec, ScannerSpec
+from gearwear.design.scan_spec import Artefact, DatumSpec, ScannerSpec
 from gearwear.errors import InputError
 from gearwear.robust import median_scale
 from gearwear.scan.types import Scan

@@ -465,7 +465,9 @@ def _in_cells(
         first = streamed.first.cells
     context = _context(first, placed, design, name, planar)
     absent = frozenset(piece.tooth for piece in broken if piece.whole)
-    apart = how_far_apart(first) if len(scans) == 1 else 0.0
+    stitched = design.scanner.stitched or len(scans) > 1
+    apart = how_far_apart(first) if len(scans) == 1 and stitched else 0.0
+    context = replace(context, turntable=design.scanner.turntable, stitched=stitched)
     context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent, views_apart=apart)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(

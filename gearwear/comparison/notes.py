@@ -15,9 +15,11 @@ from gearwear.comparison.same_teeth import SameTeeth
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.quantity import NORMAL_95, counted, listed, number, significant
+from gearwear.design.scan_spec import ScannerSpec
 from gearwear.design.side import Side
-from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FILLET, FLANK, TIP
+from gearwear.diagnose.effects import named_effects
+from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.found import Loop
 from gearwear.loaded.study import load_left_out
 from gearwear.placing.datum import LOW, Datum, bends_otherwise, taken_for_unworn
@@ -74,6 +76,7 @@ def notes_of(
         *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
         *edge_notes(wear),
         *scanner_notes(design.scanner, measured.placed.registration.noise),
+        *scanner_unstated(measured),
         *((SECTION_WEIGHED,) if design.weighing is not None and measured.planar else ()),
         *load_left_out(design),
         *_no_forecast(pair, ahead),
@@ -272,6 +275,27 @@ def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
         more = "look for glare, focus and strays"
         notes.append(f"{scatter}: {less if noise < stated.noise else more}")
     return tuple(notes)
+
+
+def scanner_unstated(measured: MeasuredGear) -> tuple[str, ...]:
+    """With which line of the design effects would be told from each other that may be the maker's or the scanner's; none where none would."""
+    loop, context = measured.loop, measured.context
+    if loop is None:
+        return ()
+    known = named_effects()
+    names = {name for effect in loop.either for name in (effect.name, *effect.alternatives)} & known.keys()
+
+    def tells(stated: Context) -> bool:
+        return any(known[name].applies(context) and not known[name].applies(stated) for name in names)
+
+    lines = (
+        ["turntable = false, where no table turned the gear before a beam"] if tells(replace(context, turntable=False)) else []
+    )
+    if len(measured.scans) == 1 and tells(replace(context, stitched=False)):
+        lines.append("stitched = false, where the file was not put together from views")
+    return (
+        (f"of what maker and scanner may both have done the design can tell: [scanner] {' and '.join(lines)}",) if lines else ()
+    )
 
 
 def _off_reference(gear: Gear) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
-from gearwear.design.spec import DatumSpec
+from gearwear.design.scan_spec import DatumSpec
 from gearwear.design.surface import SURFACE_NAMES, locate
 from gearwear.errors import InputError
 from gearwear.placing.mark import SeenMark, number_by_mark

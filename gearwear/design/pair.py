@@ -15,7 +15,8 @@ from gearwear.design.limits import Limits
 from gearwear.design.load import LoadSpec
 from gearwear.design.quantity import apart, as_given, at_least, at_most, not_zero
 from gearwear.design.report_details import ReportDetails
-from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
+from gearwear.design.scan_spec import DatumSpec, ScannerSpec
+from gearwear.design.spec import PairSpec
 from gearwear.design.weighing import WeighingSpec
 from gearwear.errors import InputError, check_kind
 

@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.given import check_whole
 from gearwear.design.quantity import shown
-from gearwear.design.spec import AXES
+from gearwear.design.scan_spec import AXES
 from gearwear.errors import InputError
 from gearwear.inspection.k_band import KBands
 from gearwear.inspection.tolerances import Edition

@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import counted, with_std
-from gearwear.design.spec import DatumMark
+from gearwear.design.scan_spec import DatumMark
 from gearwear.design.twist import wrapped_angle
 from gearwear.errors import InputError
 from gearwear.placing.pose import Pose, about_z, flip

@@ -14,7 +14,7 @@ import gearwear as gw
 from gearwear.comparison import before
 from gearwear.comparison.artefact import calibrated, see
 from gearwear.design import parse_design
-from gearwear.design.spec import Artefact
+from gearwear.design.scan_spec import Artefact
 from gearwear.errors import InputError
 
 GEAR = {"gear": {"teeth": 20, "module": 2.0, "face_width": 10.0}}

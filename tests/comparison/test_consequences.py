@@ -16,7 +16,7 @@ from gearwear.comparison.notes import scanner_notes
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
 from gearwear.design import parse_design, read_design
-from gearwear.design.spec import ScannerSpec
+from gearwear.design.scan_spec import ScannerSpec
 from gearwear.design.surface import locate
 from gearwear.report.records.comparison import document
 from gearwear.wear.tooth_summary import ThinnestTooth

@@ -12,7 +12,7 @@ import pytest
 
 from gearwear.comparison.bore import band_axis, datum_axis, end_axis
 from gearwear.design import parse_design
-from gearwear.design.spec import DatumBand
+from gearwear.design.scan_spec import DatumBand
 from gearwear.design.surface import END_HIGH, END_LOW, OTHER, SurfacePoints
 from gearwear.errors import InputError
 

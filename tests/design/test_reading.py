@@ -168,6 +168,8 @@ def test_wrong_pair_values_are_named(pair, message):
             r"\[load\] poisson = 0.5: must lie from 0 to 0.49",
         ),
         ({"gear": GEAR, "scanner": {"noise_um": 0}}, r"\[scanner\] noise_um = 0 µm: must lie from 0.001"),
+        ({"gear": GEAR, "scanner": {"turntable": 0}}, r"\[scanner\] turntable = 0: must be true or false"),
+        ({"gear": GEAR, "scanner": {"stitched": "no"}}, r"\[scanner\] stitched = 'no': must be true or false"),
         ({"gear": GEAR, "scanner": {"axis_offset_mm": "x"}}, r"\[scanner\] axis_offset_mm = 'x': must be a number"),
     ],
 )

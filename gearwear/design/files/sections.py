@@ -11,17 +11,19 @@ from dataclasses import fields
 from datetime import date, datetime, time
 from typing import Any
 
-from gearwear.design.files.values import check_keys, exclusive, finite_number, number_or, quoted_word, unknown
+from gearwear.design.files.values import check_keys, exclusive, finite_number, number_or, quoted_word, unknown, yes_or_no
 from gearwear.design.limits import LIMIT_KEYS, Limits
 from gearwear.design.load import LoadSpec
 from gearwear.design.quantity import shown
 from gearwear.design.report_details import ReportDetails
-from gearwear.design.spec import EXPANSION_PPM, Artefact, Baseline, DatumBand, DatumMark, DatumSpec, PairSpec, ScannerSpec
+from gearwear.design.scan_spec import EXPANSION_PPM, Artefact, DatumBand, DatumMark, DatumSpec, ScannerSpec
+from gearwear.design.spec import Baseline, PairSpec
 from gearwear.design.weighing import DENSITY, DENSITY_STD, WeighingSpec
 from gearwear.errors import InputError
 
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
-SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max", "scale_std_ppm")
+SCANNER_NUMBERS = ("axis_offset_mm", "noise_um", "scale_ppm_max", "scale_std_ppm")
+SCANNER_KEYS = (*SCANNER_NUMBERS, "turntable", "stitched")
 DATUM_KEYS = (
     "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "temperature_std_K", "material", "expansion_ppm_K",
     "artefact",
@@ -61,10 +63,12 @@ def parse_pair(table: dict[str, Any]) -> PairSpec:
 def parse_scanner(table: dict[str, Any]) -> ScannerSpec:
     """``[scanner]``: µm and ppm here, mm and shares inside."""
     check_keys("[scanner]", table, SCANNER_KEYS)
-    offset, noise, scale, scale_std = (number_or("scanner", table, key, None) for key in SCANNER_KEYS)
+    offset, noise, scale, scale_std = (number_or("scanner", table, key, None) for key in SCANNER_NUMBERS)
+    turntable, stitched = (yes_or_no("scanner", table, key, True) for key in ("turntable", "stitched"))
     return ScannerSpec(
-        offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale, 1e-6 * (scale_std or 0.0)
-    )
+        offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale, 1e-6 * (scale_std or 0.0),
+        turntable, stitched,
+    )  # fmt: skip
 
 
 def parse_datum(table: dict[str, Any]) -> DatumSpec:

@@ -46,6 +46,14 @@ def quoted_word(section: str, table: dict[str, Any], key: str) -> str:
     return value
 
 
+def yes_or_no(section: str, table: dict[str, Any], key: str, default: bool) -> bool:
+    """True or false in a table, or what holds where it is left out."""
+    value = table.get(key, default)
+    if not isinstance(value, bool):
+        raise InputError(f"[{section}] {key} = {shown(value)}: must be true or false")
+    return value
+
+
 def unknown(place: str, key: str, known: Sequence[str]) -> str:
     """That a key is unknown, and which one was perhaps meant; failing that, all that are known."""
     near = get_close_matches(key.lower(), known, 1)

@@ -33,6 +33,9 @@ class AxisOffsetLateral(CatalogueEffect):
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("offset_um"),)
     phrase: ClassVar[str] = "a laser line that passes the table's axis by {offset_um}"
 
+    def applies(self, context: Context) -> bool:
+        return context.turntable
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         r = np.hypot(points.position[:, 0], points.position[:, 1])
         return np.asarray((turning(points) / np.maximum(r, 1e-9))[:, None])

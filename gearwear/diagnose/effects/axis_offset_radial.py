@@ -34,6 +34,9 @@ class AxisOffsetRadial(CatalogueEffect):
     phrase: ClassVar[str] = "a laser zero {offset_um} off along the line of sight (every radius reads too large)"
     phrase_below: ClassVar[str] = "a laser zero {offset_um} off along the line of sight (every radius reads too small)"
 
+    def applies(self, context: Context) -> bool:
+        return context.turntable
+
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         # On surfaces that reach from root to tip it is nearly a scale: one that no calibrated instrument has is none of this either.
         return abs(float(amplitudes[0])) <= context.scale_limit * context.gear.tip_radius

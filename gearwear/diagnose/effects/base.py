@@ -71,6 +71,10 @@ class Context:
         Height of the cells the scan is averaged over, mm; 0 where single points are looked at.
     scale_limit : float
         Largest relative error of the scanner's scale.
+    turntable : bool
+        Whether the gear may have turned on a table before a beam that looks along its radius.
+    stitched : bool
+        Whether the scan may have been put together from views.
     tip_shift : float
         How far the tips lie from the drawn ones, along the radius, mm; not above 0.
     fillet_edges : (k + 1,) float
@@ -96,6 +100,8 @@ class Context:
     mate: tuple[float, float] | None = None
     row_height: float = 0.0
     scale_limit: float = SCALE_LIMIT
+    turntable: bool = True
+    stitched: bool = True
     fillet_edges: tuple[float, ...] = ()
     tip_shift: float = 0.0
     fillets_told: bool = True

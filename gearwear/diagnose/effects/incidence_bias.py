@@ -35,6 +35,9 @@ class IncidenceBias(CatalogueEffect):
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("bias_um"),)
     phrase: ClassVar[str] = "a range bias of {bias_um} that grows with the angle of incidence"
 
+    def applies(self, context: Context) -> bool:
+        return context.turntable
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         end = (points.surface == END_LOW) | (points.surface == END_HIGH)
         return np.where(end, 0.0, 1.0 - np.abs(radial(points)))[:, None]

@@ -37,7 +37,7 @@ class LensDistortion(CatalogueEffect):
     phrase: ClassVar[str] = "lens distortion that bows the scan by {bow_um}"
 
     def applies(self, context: Context) -> bool:
-        return not context.planar
+        return context.turntable and not context.planar
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.asarray((radial(points) * (2.0 * face_coordinate(points, context.gear)) ** 2)[:, None])

@@ -38,6 +38,9 @@ class ScanDrift(CatalogueEffect):
     lower: ClassVar[float] = -math.radians(2.0)
     upper: ClassVar[float] = math.radians(2.0)
 
+    def applies(self, context: Context) -> bool:
+        return context.turntable
+
     def shapes(self, context: Context) -> list[Shape]:
         step = self._step(context)
         return [(step * number,) for number in range(round(2.0 * math.pi / step))]

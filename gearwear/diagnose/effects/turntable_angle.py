@@ -40,6 +40,9 @@ class TurntableAngle(WaveEffect):
     most: ClassVar[float] = math.radians(1.0)
     phrase: ClassVar[str] = "a turntable whose angle is off by {amplitude_deg}, {order} times a revolution"
 
+    def applies(self, context: Context) -> bool:
+        return context.turntable
+
     def shapes(self, context: Context) -> list[Shape]:
         # A whole number of waves per tooth is the same on every tooth: a thicker tooth or another profile, not the table.
         return [(float(order),) for order in range(1, 25) if order % context.gear.teeth]

@@ -45,6 +45,9 @@ class ViewRegistration(CatalogueEffect):
     )
     phrase: ClassVar[str] = "a view {shift_x_um} in x and {shift_y_um} in y out of place"
 
+    def applies(self, context: Context) -> bool:
+        return context.stitched
+
     def shapes(self, context: Context) -> list[Shape]:
         return [(i * STEP, i * STEP + math.radians(width)) for width in (90, 150) for i in range(12)]
 

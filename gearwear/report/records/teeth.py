@@ -7,7 +7,7 @@ from typing import Any
 
 from gearwear.arrays import Floats
 from gearwear.comparison.same_teeth import SameTeeth
-from gearwear.design.spec import DatumMark
+from gearwear.design.scan_spec import DatumMark
 from gearwear.placing.mark import SeenMark
 from gearwear.report.records.numbers import Json, value_std
 

@@ -1,0 +1,59 @@
+"""What a design says of its scanner: where no table turned the gear, and no views were put together, nothing of theirs explains a scan."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gearwear as gw
+from gearwear.comparison.contact_readings import ReadOtherwise
+from gearwear.comparison.stations import compare
+from gearwear.design.scan_spec import ScannerSpec
+from gearwear.diagnose.effects import named_effects
+from tests.commands.doors import PAIR, scan_file
+from tests.synthetic import Effect, Recipe
+
+OF_TABLE = {"turntable_angle", "scan_drift", "axis_offset_radial", "axis_offset_lateral", "incidence_bias", "lens_distortion"}
+"""What errs with the table, or with a beam that looks along its radius."""
+NEITHER = ScannerSpec(turntable=False, stitched=False)
+WAVE = 15.0 * np.sin(2.0 * np.pi * 2.0 * np.arange(12) / 12.0 + 0.4) + 4.0 * np.sin(np.arange(12) ** 2)
+"""µm: pitch errors of teeth, most of it twice a revolution, as a table may err too."""
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory):
+    """A gear cut with pitch errors, with nothing stated and with neither table nor views."""
+    recipe = Recipe(jitter=1.0, noise_um=6.0, effects=(Effect("pitch", {"index_um": tuple(WAVE)}),)).of_size(40_000)
+    files, _ = scan_file(tmp_path_factory.mktemp("stated"), "pitch", recipe, 5)
+    design = gw.read_design(PAIR)
+    return [compare(replace(design, scanner=scanner), files, inspection=False) for scanner in (ScannerSpec(), NEITHER)]
+
+
+def test_what_a_table_may_have_done_is_open_until_it_is_said_that_there_was_none(told):
+    unsaid, said = told
+    assert any(OF_TABLE & {effect.name, *effect.alternatives} for effect in unsaid.effects)
+    assert any("[scanner] turntable = false" in note for note in unsaid.notes)
+    assert "pitch" in {effect.name for effect in said.effects}
+    assert not any((OF_TABLE | {"view_registration"}) & {effect.name, *effect.alternatives} for effect in said.effects)
+    assert not any("[scanner]" in note for note in said.notes)
+
+
+def test_pitch_errors_that_cannot_be_the_tables_leave_nothing_of_the_contact_open(told):
+    """What the flanks have is in mesh, whole: the wave that was cut, to a tooth or two in contact."""
+    unsaid, said = (results.pair for results in told)
+    assert unsaid.limits is not None and ReadOtherwise.EITHER in unsaid.limits.why
+    assert said.limits is None or ReadOtherwise.EITHER not in said.limits.why
+    assert said.contact.peak_to_peak_um == pytest.approx(float(np.ptp(WAVE)), rel=0.25)
+
+
+@pytest.mark.parametrize(
+    ("stated", "gone"), [({"turntable": False}, OF_TABLE), ({"stitched": False}, {"view_registration"}), ({}, set())]
+)
+def test_each_line_leaves_out_what_hangs_on_it_and_nothing_else(told, stated, gone):
+    context = told[0].measured.context
+    out = {
+        name
+        for name, effect in named_effects().items()
+        if effect.applies(context) and not effect.applies(replace(context, **stated))
+    }
+    assert out == gone
