@@ -365,6 +365,7 @@ MUTATIONS = [
         ("diagnose/effects/scan_drift.py", "return context.turntable", "return True", "comparison/test_stated_scanner.py"),
         ("comparison/measured_gear.py", "turntable=design.scanner.turntable", "turntable=True", "comparison/test_stated_scanner.py"),
         ("comparison/notes.py", "*scanner_unstated(measured),", "", "comparison/test_stated_scanner.py"),
+        ("placing/root.py", "SEEN = 0.05", "SEEN = 0.0", "placing/test_root.py"),
         ("wear/own_level.py", "sure * std)", "0.0 * std)", "wear/test_own_level.py"),
         ("wear/hollows.py", "depth**2 - by_chance", "depth**2", "wear/test_hollows.py"),
         ("wear/hollows.py", "np.where(seen, expected, np.inf)", "expected", "wear/test_hollows.py"),

@@ -37,6 +37,8 @@ UNLIKE = 0.004
 LEFT_BY_LEVELS = 0.1
 """Share of how far a root is from the design's that a level for each column of cells leaves: 5 to 10 µm of the 113 and 127 µm of roots ground or cut with protuberance
 (family a of benchmarks/families)."""
+SEEN = 0.05
+"""Share of the points of a bin below which one side of the spaces was not seen there."""
 STEPS = 12
 """Of the golden section for the tip radius, after the grid."""
 
@@ -189,9 +191,9 @@ def _along(foot: Floats, gear: Gear) -> Floats:
 
 
 def _middle(deviation: Floats, is_left: Bools) -> float:
-    """Median of either side, averaged: a turn takes from one what it gives to the other."""
+    """Median of either side, averaged: a turn takes from one what it gives to the other. A few strays are no side that was seen."""
     sides = [deviation[is_left], deviation[~is_left]]
-    medians = [median(side) for side in sides if len(side)]
+    medians = [median(side) for side in sides if len(side) and len(side) >= SEEN * len(deviation)]
     return sum(medians) / len(medians)
 
 
