@@ -10,7 +10,7 @@ from gearwear.arrays import Bools
 from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, Progress, register
 from gearwear.comparison.pass_limits import grid_of_sample
 from gearwear.comparison.passes import last_pass, moved, relocated_pass
-from gearwear.comparison.placed_notes import beside_views
+from gearwear.comparison.placed_notes import beside_smoothing, beside_views
 from gearwear.comparison.relocated import FinalMotion, Relocation, clip_of, is_far, with_pits
 from gearwear.comparison.which_gear import check_part
 from gearwear.design.pair import Design
@@ -224,6 +224,7 @@ class _Scan:
         motion, located = FinalMotion.of(measured.placed, loop, measured.gear, again)
         cells = with_pits(located, self.grid) if measured.streamed is None else moved(self.cells, -loop.motion)
         named = beside_views(loop, measured.placed, self.cells, measured.noise)
+        named = beside_smoothing(named, located, len(measured.scans))
         context = measured.context.with_pitch(named.context.pitch)
         return replace(
             measured, context=context, first=self.cells, loop=named, final=FinalPlace(located, motion.pose, cells)

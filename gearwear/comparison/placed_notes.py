@@ -13,7 +13,7 @@ from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.effects.base import MEASURED, SCALE_LIMIT, Context
 from gearwear.diagnose.effects.view_registration import VIEW_REGISTRATION
 from gearwear.diagnose.found import FoundEffect, Loop
-from gearwear.diagnose.loop import LEVEL_GROUP
+from gearwear.diagnose.loop import LEVEL_GROUP, or_smoothing
 from gearwear.placing.cells import Cells
 from gearwear.placing.refusal import doubtful_distance, flanks_off
 from gearwear.placing.smoothing import shared_errors
@@ -105,6 +105,13 @@ def _or_a_view(effect: FoundEffect) -> FoundEffect:
     if not own or effect.name == VIEW_REGISTRATION:
         return effect
     return effect.or_one_of({VIEW_REGISTRATION})
+
+
+def beside_smoothing(loop: Loop, located: SurfacePoints, views: int) -> Loop:
+    """A loop with what a scan that was smoothed leaves open: a form of the flanks may be what rounded its edges."""
+    named = tuple(or_smoothing(effect) for effect in loop.effects)
+    alike = all(one.alternatives == other.alternatives for one, other in zip(named, loop.effects, strict=True))
+    return loop if alike or not smoothing_of(located, views) else replace(loop, effects=named)
 
 
 VIEWS_MAY_LIE_APART = (

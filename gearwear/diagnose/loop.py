@@ -197,7 +197,7 @@ def _closed(
         others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
         named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
         if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
-            named = tuple(_or_smoothing(effect) for effect in named)
+            named = tuple(or_smoothing(effect) for effect in named)
         whole = replace(taken, effects=named, others=others)
         if refuted or apart.any():
             return whole
@@ -214,8 +214,8 @@ def _with_margins(context: Context, cells: Cells, worn: frozenset[Side] | None) 
     return replace(context, faces=shown), sides - {face.side for face in shown}
 
 
-def _or_smoothing(effect: FoundEffect) -> FoundEffect:
-    """The effect, of a scan whose edges are rounded over more than a cell: software smoothed it, as no spot does, and bent the flanks with the edges.
+def or_smoothing(effect: FoundEffect) -> FoundEffect:
+    """The effect, of a scan that software smoothed, as is told by edges rounded over more than a cell, which no spot does: it bent the flanks with them.
     Level, scale and what every tooth has of its own are told all the same; a form is not."""
     known = effect.candidate.effect
     form = known.group == FORM_GROUP or (known.kind is Kind.MANUFACTURE and known.group != LEVEL_GROUP)
@@ -454,4 +454,4 @@ def make_context(
     )  # fmt: skip
 
 
-__all__ = ["FoundEffect", "Loop", "close_loop", "make_context"]
+__all__ = ["FoundEffect", "Loop", "close_loop", "make_context", "or_smoothing"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -11,7 +12,7 @@ import numpy as np
 
 import gearwear as gw
 from gearwear.comparison.notes import off_the_drawing, proud_notes, seam_note, take_each_other_back
-from gearwear.comparison.placed_notes import SMOOTHED, smoothing_of
+from gearwear.comparison.placed_notes import SMOOTHED, beside_smoothing, smoothing_of
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
 from gearwear.diagnose.effects.tip_diameter import EFFECT as TIP_DIAMETER
@@ -20,6 +21,7 @@ from gearwear.report.words.terminal import lines
 from gearwear.report.words.verdict import doubts
 from gearwear.wear.tooth_summary import DriftSeam
 from tests.placing.test_smoothing import flanks, form, smoothed
+from tests.report.fake import fake_effect, fake_results
 from tests.synthetic import Recipe, make_scan
 
 DESIGN = """[pinion]
@@ -116,3 +118,13 @@ def test_a_scan_is_smoothed_where_its_points_share_their_errors_and_not_where_fl
     assert smoothing_of(stepped, 1) == ()
     means = points.with_deviation(smoothed(points, 0.006 * errors, 6) + form(points))
     assert smoothing_of(means, 1) == (SMOOTHED,) and smoothing_of(means, 2) == ()
+
+
+def test_forms_of_a_smoothed_scan_may_be_its_rounded_edges_and_levels_may_not():
+    points, errors = flanks()
+    means = points.with_deviation(smoothed(points, 0.006 * errors, 6))
+    loop = replace(fake_results().loop, effects=(fake_effect("tip_relief", {}), fake_effect("coating", {})))
+    doubted = beside_smoothing(loop, means, 1).effects
+    assert [effect.alternatives for effect in doubted] == [("edge_rounding",), ()]
+    assert beside_smoothing(loop, points.with_deviation(0.006 * errors), 1) is loop
+    assert beside_smoothing(loop, means, 2) is loop

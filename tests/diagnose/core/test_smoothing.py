@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.surface import flank_points
-from gearwear.diagnose.loop import _or_smoothing
+from gearwear.diagnose.loop import or_smoothing
 from gearwear.diagnose.parameter import ParameterEstimate
 from tests.report.fake import fake_effect, fake_results
 
@@ -20,7 +20,7 @@ from tests.report.fake import fake_effect, fake_results
 )  # fmt: skip
 def test_in_a_scan_that_software_smoothed_forms_are_doubted_and_levels_are_not(name, doubted):
     effect = fake_effect(name, {}, others=("taper",))
-    assert _or_smoothing(effect).alternatives == (("edge_rounding", "taper") if doubted else ("taper",))
+    assert or_smoothing(effect).alternatives == (("edge_rounding", "taper") if doubted else ("taper",))
 
 
 @pytest.mark.parametrize(
