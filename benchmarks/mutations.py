@@ -367,6 +367,8 @@ MUTATIONS = [
         ("comparison/notes.py", "*scanner_unstated(measured),", "", "comparison/test_stated_scanner.py"),
         ("placing/root.py", "SEEN = 0.05", "SEEN = 0.0", "placing/test_root.py"),
         ("comparison/placed_notes.py", "return loop if alike or not smoothing_of(located, views)", "return loop if alike", "comparison/test_notes.py"),
+        ("wear/thickness.py", "self.std[at]), self.pit_bottom)", "self.std[at]))", "comparison/test_pit_bottom.py"),
+        ("comparison/thick.py", "thickness.turn * deepest", "thickness.turn * deepest * 0.5", "comparison/test_pit_bottom.py"),
         ("wear/own_level.py", "sure * std)", "0.0 * std)", "wear/test_own_level.py"),
         ("wear/hollows.py", "depth**2 - by_chance", "depth**2", "wear/test_hollows.py"),
         ("wear/hollows.py", "np.where(seen, expected, np.inf)", "expected", "wear/test_hollows.py"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -98,8 +99,21 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
     arcs = worn_arcs(cells, wear.mask, measured.worn_sides, sections.band, measured.noise, measured.loop)
     if arcs is None:
         return thickness
-    hollows = find_hollows(arcs, pitted(cells), measured.worn_sides, thickness.widths, sections, thickness.as_made)
-    return replace(thickness, hollows=hollows, unmeasured=unmeasured_teeth(thickness, wear, arcs))
+    pits = pitted(cells)
+    hollows = find_hollows(arcs, pits, measured.worn_sides, thickness.widths, sections, thickness.as_made)
+    return replace(
+        thickness, hollows=hollows, unmeasured=unmeasured_teeth(thickness, wear, arcs), pit_bottom=_pit_bottom(thickness, wear, pits)
+    )
+
+
+def _pit_bottom(thickness: SectionThickness, wear: Wear, pits: Bools) -> float:
+    """`SectionThickness.pit_bottom` of teeth with `pits` (teeth,); inf where none has any."""
+    deepest = np.zeros(len(pits))
+    for region in wear.regions:
+        if math.isfinite(region.max_depth):
+            deepest[region.tooth] += region.max_depth
+    left = thickness.as_made.min(axis=1) - thickness.turn * deepest
+    return float(left[pits].min(initial=math.inf))
 
 
 def _sections_gone(measured: MeasuredGear, sections: SectionSums) -> Bools:

@@ -90,6 +90,9 @@ class SectionThickness(Card):
     otherwise : (float, float)
         How much thinner (≤ 0) and thicker (≥ 0) all teeth are, mm of arc, were effects that are taken for made or measured of the other kind, where the
         scan does not tell: a coat for thick teeth.
+    pit_bottom : float
+        Arc of the thinnest tooth with pits were the deepest ones of its flanks where thickness is measured, mm: points that are pooled over several sections do not
+        tell that they are not.
     seam : DriftSeam or None
         What it is were pitch errors a drift of the scan; None where that is not open, or changes nothing.
     """
@@ -116,6 +119,7 @@ class SectionThickness(Card):
     made: Floats | None = None
     otherwise: tuple[float, float] = (0.0, 0.0)
     unmeasured: UnmeasuredTeeth | None = None
+    pit_bottom: float = math.inf
     seam: DriftSeam | None = None
 
     def headline(self) -> str:
@@ -338,7 +342,7 @@ class SectionThickness(Card):
         if self.pooled > 1:
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
-            low = min(low, float(self.arc[at] - self.std[at]))
+            low = min(low, float(self.arc[at] - self.std[at]), self.pit_bottom)
         other = None if self.unmeasured is None else self.unmeasured.least
         if other is not None:
             low, high = min(low, other.low), min(high, other.high)
