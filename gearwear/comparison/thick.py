@@ -102,7 +102,10 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
     pits = pitted(cells)
     hollows = find_hollows(arcs, pits, measured.worn_sides, thickness.widths, sections, thickness.as_made)
     return replace(
-        thickness, hollows=hollows, unmeasured=unmeasured_teeth(thickness, wear, arcs), pit_bottom=_pit_bottom(thickness, wear, pits)
+        thickness,
+        hollows=hollows,
+        unmeasured=unmeasured_teeth(thickness, wear, arcs),
+        pit_bottom=_pit_bottom(thickness, wear, pits),
     )
 
 
