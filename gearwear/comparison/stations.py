@@ -134,8 +134,9 @@ def compare(
     exact = None
     if design.pair is not None:
         exact = exact_meshing(design.gears["pinion"], design.gears["gear"], design.centre_distance)
+    run = Run.of(scanned, lost)
     with beside([*_apart_from_contact(scanned, lost, exact), *late]) as others:
-        measured, points, run = scanned.measured, scanned.as_made_points, Run.of(scanned, lost)
+        measured, points = scanned.measured, scanned.as_made_points
         met = None if design.pair is None else _against_mate(design, scanned, lost, run, points, ahead, progress)
         law = None if met is None else met.law
         laws = fit_laws(wear, points, scanned.as_made, measured.context, measured.loop, scanned.scatter, law)

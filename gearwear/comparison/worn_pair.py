@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from gearwear.meshing.slices import facing_mate, heights_beside
 from gearwear.meshing.spread import ContactSpread, contact_spread
 from gearwear.meshing.study import facing
 from gearwear.placing.cells import CellGrid
+from gearwear.processors import each
 from gearwear.wear.profiles import ProfileNodes, node_heights, without_added_metal, worn_profiles
 from gearwear.wear.smooth import WornSurface
 
@@ -99,15 +101,20 @@ class RunningGear:
         )
         fields_back = (fields.raw, *fields.taken.values()) if fields.raw.any() else ()
 
-        def scattered(surfaces: Floats, off: Floats) -> tuple[ToothProfiles, ...]:
-            return tuple(sides.lacking(depth).profiles(added) for depth, added in zip(surfaces, off, strict=True))
+        def scattered(surfaces: Floats, off: Floats) -> list[Floats]:
+            """Half angles alone: they come from another process, and the gear is this one's."""
+            return [sides.lacking(depth).profiles(added).half_angle for depth, added in zip(surfaces, off, strict=True)]
 
         other = np.roll(np.arange(len(sizes)), -1)
+        also = surface.draws + surface.draws[other] - surface.depth, effects_off + effects_off[other]
+        calls = [partial(scattered, surface.draws, effects_off), partial(scattered, *also)]
+        found = each(calls) if len(sizes) else ([], [])
+        drawn, drawn_again = (tuple(replace(present, half_angle=psi) for psi in one) for one in found)
         return cls(
             present,
             tuple(sides.profiles(field) if field.any() else present for field in fields_back),
-            scattered(surface.draws, effects_off),
-            scattered(surface.draws + surface.draws[other] - surface.depth, effects_off + effects_off[other]),
+            drawn,
+            drawn_again,
             replace(sides, depth=nothing).profiles(),
         )
 

@@ -244,7 +244,9 @@ class Passes:
 
     def furthest(self, advance: Floats) -> Floats:
         """Greatest advance of each half, (halves, positions), of advances (positions, columns, slices), mm."""
-        return np.stack([advance[:, :, self.half == half].max(axis=(1, 2)) for half in np.unique(self.half)])
+        halves = np.unique(self.half)
+        own = [advance] if len(halves) == 1 else [advance[:, :, self.half == half] for half in halves]  # a choice is a copy
+        return np.stack([one.max(axis=(1, 2)) for one in own])
 
     def shifts(self, variants: Sequence[Passes], side: Side, tooth: Ints, contact: PairContact) -> Iterator[Floats]:
         """What the advances of `contact` change by where the flanks are those of each variant, (angles, rows) mm.
@@ -260,15 +262,16 @@ class Passes:
             knot, part = place_among(base.radius, radius)
             teeth, sides, rows, knots = base.half_angle.shape
             start = ((number[:, None] % teeth * sides + flank.index) * rows + row).ravel() * knots + knot
-            places.append((start, part))
+            was = base.half_angle.ravel()
+            places.append((part, [(at, was.take(at)) for at in (start, start + 1)]))
         for variant in variants:
             change = np.zeros_like(contact.advance)
-            for base, other, (start, part) in zip(
+            for base, other, (part, ends) in zip(
                 (self.driver, self.driven), (variant.driver, variant.driven), places, strict=True
             ):
                 if other.half_angle is not base.half_angle:
-                    now, was = other.half_angle.ravel(), base.half_angle.ravel()
-                    low, high = (now[at] - was[at] for at in (start, start + 1))
+                    now = other.half_angle.ravel()
+                    low, high = (now.take(at) - was for at, was in ends)
                     change += base.gear.base_radius * ((1.0 - part) * low + part * high)
             yield np.where(touching, change, 0.0)
 
