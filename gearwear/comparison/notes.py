@@ -264,7 +264,10 @@ def take_each_other_back(loop: Loop | None) -> tuple[str, ...]:
 
 def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
     """What the reader must know where something was stated of the scanner; `noise` is the scan's own, mm."""
-    notes = []
+    none = [
+        *(() if stated.turntable else ("no table turned the gear",)), *(() if stated.stitched else ("no file was put together from views",)),
+    ]  # fmt: skip
+    notes = [f"as the design says, {' and '.join(none)}: what these may do wrong was not looked for"] if none else []
     if stated.axis_offset is not None:
         notes.append(
             f"[scanner] axis_offset_mm = {stated.axis_offset:g} is not used: the effects of the table take its axis to be the gear's"

@@ -36,6 +36,8 @@ def test_what_a_table_may_have_done_is_open_until_it_is_said_that_there_was_none
     assert "pitch" in {effect.name for effect in said.effects}
     assert not any((OF_TABLE | {"view_registration"}) & {effect.name, *effect.alternatives} for effect in said.effects)
     assert not any("[scanner]" in note for note in said.notes)
+    assert "as the design says, no table turned the gear and no file was put together from views" in " ".join(said.notes)
+    assert "as the design says" not in " ".join(unsaid.notes)
 
 
 def test_pitch_errors_that_cannot_be_the_tables_leave_nothing_of_the_contact_open(told):
