@@ -41,15 +41,17 @@ def _ratios(flank: SurfacePoints) -> list[float]:
 
     if len(flank) < PATCH_POINTS:
         return []
-    at = np.stack([flank.roll, flank.position[:, 2]], axis=1)
+    at = np.stack([flank.roll, flank.position[:, 2]]).T  # each way by itself in memory: spans along it take a third of the time
     tree = cKDTree(flank.position)
-    result, left = [], np.full(len(at), np.nan)
+    result, left, own = [], np.full(len(at), np.nan), np.zeros(len(at), np.bool_)
     for patch in _patches(at):
         nearest = tree.query(flank.position[patch], k=2)[1][:, 1]
         plane = np.column_stack([np.ones(len(patch)), at[patch] - at[patch].mean(axis=0)])
         fitted, _, rank, _ = np.linalg.lstsq(plane, flank.deviation[patch], rcond=None)
         left[patch] = rest = flank.deviation[patch] - plane @ fitted
-        inside = np.isin(nearest, patch)
+        own[patch] = True
+        inside = own[nearest]
+        own[patch] = False
         square = float(rest @ rest) / (len(patch) - int(rank))
         if inside.any() and square > 0.0:
             apart = rest[inside] - left[nearest[inside]]
@@ -72,6 +74,6 @@ def _halves(at: Floats, part: Ints) -> list[Ints]:
     """Of a part that is large enough; else the part."""
     if len(part) < 2 * PATCH_POINTS:
         return [part]
-    along, half = at[part, int(np.argmax(np.ptp(at[part], axis=0)))], len(part) // 2
+    along, half = max((way[part] for way in at.T), key=np.ptp), len(part) // 2
     order = part[np.argpartition(along, half) if half >= 2 * PATCH_POINTS else np.argsort(along, kind="stable")]
     return [order[:half], order[half:]]
