@@ -369,6 +369,7 @@ MUTATIONS = [
         ("comparison/placed_notes.py", "return loop if alike or not smoothing_of(located, views)", "return loop if alike", "comparison/test_notes.py"),
         ("wear/thickness.py", "self.std[at]), self.pit_bottom)", "self.std[at]))", "comparison/test_pit_bottom.py"),
         ("comparison/thick.py", "thickness.turn * deepest", "thickness.turn * deepest * 0.5", "comparison/test_pit_bottom.py"),
+        ("wear/cell_means.py", "BESIDE = 2", "BESIDE = 9", "wear/test_strays_in_wear.py"),
         ("wear/own_level.py", "sure * std)", "0.0 * std)", "wear/test_own_level.py"),
         ("wear/hollows.py", "depth**2 - by_chance", "depth**2", "wear/test_hollows.py"),
         ("wear/hollows.py", "np.where(seen, expected, np.inf)", "expected", "wear/test_hollows.py"),

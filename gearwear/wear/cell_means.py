@@ -19,6 +19,9 @@ from gearwear.wear.surface import FEWEST_SEEN, SideSurface
 FEW, LONE = 3, 5.0
 """Points of a cell that cannot outvote a stray among them; scatters of points, or of the cells of a column, by which one may lie off what is round it."""
 
+BESIDE = 2
+"""Cells round one that must have been seen for the others not to count."""
+
 At = tuple[int, int, slice, slice]
 """Tooth, side, rows and columns."""
 
@@ -124,8 +127,15 @@ def _strays(filled: Floats, cells: Cells, noise: float) -> Bools:
     beyond, own = filled - common, np.where(count > 0, deviation, np.nan) - common
     beside = np.ones((1, 1, 3, 3), dtype=np.bool_)
     beside[..., 1, 1] = False
-    low = ndimage.minimum_filter(beyond, footprint=beside, mode="constant", cval=np.inf)
-    high = ndimage.maximum_filter(beyond, footprint=beside, mode="constant", cval=-np.inf)
+    # Of the cells round it those that were seen, where some were: the others are filled from the stray as well.
+    some = ndimage.convolve((count > 0).astype(np.int8), beside.astype(np.int8), mode="constant") >= BESIDE
+    low, high = (
+        np.where(
+            some,
+            *(of(values, footprint=beside, mode="constant", cval=end) for values in (np.where(count > 0, own, end), beyond)),
+        )
+        for of, end in ((ndimage.minimum_filter, np.inf), (ndimage.maximum_filter, -np.inf))
+    )
     usual = np.fmax(np.apply_along_axis(scale_about, 1, np.moveaxis(own, 0, 2).reshape(len(Side), -1, own.shape[3])), noise)
     off = np.fmax(low - own, own - high) > high - low + LONE * usual[:, None]
     apart = (count < FEW) | ((count <= FEW) & (np.nan_to_num(scatter) > LONE * noise))

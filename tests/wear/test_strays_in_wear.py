@@ -1,5 +1,7 @@
 """Strays are neither the deepest wear nor a fracture: points thrown about on flanks of known depth, and inside teeth that are whole."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -143,3 +145,19 @@ def test_a_stray_beside_steep_wear_is_none_of_the_surface(row):
     left_out = ~means.held[..., grid.fillet :]
     assert left_out[4, Side.LEFT.index, row, column]
     assert left_out.sum() == 1
+
+
+def test_a_stray_fills_no_neighbours_for_itself():
+    """At the end of the face, where nothing was seen on one side of it: what is filled there says nothing of it, the cells on the other side do."""
+    cells, random = every_cell(GEAR, 0.9), np.random.default_rng(10)
+    flank = flanks_of(cells) + random.normal(0.0, 0.003, flanks_of(cells).shape)
+    flank[4, Side.LEFT.index, -1, 6] -= 0.05
+    put = with_flanks(cells, flank)
+    number = put.grid.sides(put.count).copy()
+    hole = number[4, Side.LEFT.index, -3:, put.grid.fillet + 4 : put.grid.fillet + 7]
+    hole[...], hole[-1, -1] = 0.0, 2.0
+    seen = replace(put, count=put.grid.on_cells(number))
+    sheets = make_side_maps(seen)
+    means = CellMeans.of(seen, sheets, infill(sheets), 0.003, None, np.array([[4, Side.LEFT.index]]))
+    held = means.held[4, Side.LEFT.index, -3:, put.grid.fillet + 4 :]
+    assert not held[:, :3].any() and held[:, 3:].all()
