@@ -224,7 +224,7 @@ class _Scan:
         motion, located = FinalMotion.of(measured.placed, loop, measured.gear, again)
         cells = with_pits(located, self.grid) if measured.streamed is None else moved(self.cells, -loop.motion)
         named = beside_views(loop, measured.placed, self.cells, measured.noise)
-        named = beside_smoothing(named, located, len(measured.scans))
+        named = beside_smoothing(named, located, len(measured.scans), self.cells)
         context = measured.context.with_pitch(named.context.pitch)
         return replace(
             measured, context=context, first=self.cells, loop=named, final=FinalPlace(located, motion.pose, cells)

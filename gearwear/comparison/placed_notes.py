@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
@@ -29,6 +30,10 @@ THINNED = (
 )
 """An even loss of all flanks looks like teeth that were cut thin."""
 SMOOTHED = "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are"
+
+
+FLAT = 0.1
+"""Share of a form, RMS, that may be bent in one that is told as a plane."""
 
 
 def alone(context: Context) -> str:
@@ -107,11 +112,30 @@ def _or_a_view(effect: FoundEffect) -> FoundEffect:
     return effect.or_one_of({VIEW_REGISTRATION})
 
 
-def beside_smoothing(loop: Loop, located: SurfacePoints, views: int) -> Loop:
-    """A loop with what a scan that was smoothed leaves open: a form of the flanks may be what rounded its edges."""
-    named = tuple(or_smoothing(effect) for effect in loop.effects)
-    alike = all(one.alternatives == other.alternatives for one, other in zip(named, loop.effects, strict=True))
-    return loop if alike or not smoothing_of(located, views) else replace(loop, effects=named)
+def beside_smoothing(loop: Loop, located: SurfacePoints, views: int, cells: Cells) -> Loop:
+    """A loop with what a scan that was smoothed leaves open: a form of the flanks may be what rounded its edges.
+
+    A mean over neighbours bends what ends; a plane it leaves as it is, and a slope that all of a flank has is none of it.
+    """
+    doubted = [or_smoothing(effect) for effect in loop.effects]
+    alike = all(one.alternatives == other.alternatives for one, other in zip(doubted, loop.effects, strict=True))
+    if alike or not smoothing_of(located, views):
+        return loop
+    flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
+    pairs = zip(doubted, loop.effects, strict=True)
+    return replace(loop, effects=tuple(new if _bends(loop.of_effect(old, flanks), flanks) else old for new, old in pairs))
+
+
+def _bends(field: Floats, flanks: SurfacePoints) -> bool:
+    """Whether a field (n,) at points of flanks is more than a plane over roll and height on each side, but for `FLAT` of it."""
+    left = whole = 0.0
+    for side in Side:
+        own = flanks.side == side
+        roll, z = flanks.roll[own], flanks.position[own, 2]
+        plane = np.column_stack([np.ones(len(z)), roll, z, roll * z])
+        rest = field[own] - plane @ np.linalg.lstsq(plane, field[own], rcond=None)[0]
+        left, whole = left + float(rest @ rest), whole + float(((field[own] - field[own].mean()) ** 2).sum()) if len(z) else whole
+    return left > FLAT**2 * whole
 
 
 VIEWS_MAY_LIE_APART = (

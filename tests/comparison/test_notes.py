@@ -120,11 +120,20 @@ def test_a_scan_is_smoothed_where_its_points_share_their_errors_and_not_where_fl
     assert smoothing_of(means, 1) == (SMOOTHED,) and smoothing_of(means, 2) == ()
 
 
-def test_forms_of_a_smoothed_scan_may_be_its_rounded_edges_and_levels_may_not():
+def test_forms_of_a_smoothed_scan_may_be_its_rounded_edges_and_slopes_and_levels_may_not():
+    """A mean over neighbours bends what ends, and leaves a plane as it is."""
     points, errors = flanks()
     means = points.with_deviation(smoothed(points, 0.006 * errors, 6))
-    loop = replace(fake_results().loop, effects=(fake_effect("tip_relief", {}), fake_effect("coating", {})))
-    doubted = beside_smoothing(loop, means, 1).effects
-    assert [effect.alternatives for effect in doubted] == [("edge_rounding",), ()]
-    assert beside_smoothing(loop, points.with_deviation(0.006 * errors), 1) is loop
-    assert beside_smoothing(loop, means, 2) is loop
+    real = fake_results()
+    cells, context, effects = real.measured.first, real.loop.context, []
+    for name in ("tip_relief", "helix_crowning", "profile_slope", "helix_slope", "coating"):
+        effect = fake_effect(name, {})
+        shape = effect.candidate.effect.shapes(context)[0]
+        each = effect.candidate.effect.basis(cells.points.take(cells.seen), context, shape).shape[1]
+        effects.append(replace(effect, candidate=replace(effect.candidate, shape=shape), amplitudes=np.full(each, 0.01)))
+    loop = replace(real.loop, effects=tuple(effects), form=())
+    doubted = beside_smoothing(loop, means, 1, cells).effects
+    assert [bool(effect.alternatives) for effect in doubted] == [True, True, False, False, False]
+    assert set(doubted[0].alternatives) == {"edge_rounding"}
+    assert beside_smoothing(loop, points.with_deviation(0.006 * errors), 1, cells) is loop
+    assert beside_smoothing(loop, means, 2, cells) is loop
