@@ -467,8 +467,10 @@ def _in_cells(
     absent = frozenset(piece.tooth for piece in broken if piece.whole)
     stitched = design.scanner.stitched or len(scans) > 1
     apart = how_far_apart(first) if len(scans) == 1 and stitched else 0.0
-    context = replace(context, turntable=design.scanner.turntable, stitched=stitched)
-    context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent, views_apart=apart)
+    context = replace(
+        context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent, views_apart=apart,
+        turntable=design.scanner.turntable, stitched=stitched,
+    )  # fmt: skip
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
         design=design, scans=scans, part=name, root=root, tip_edge=edges[0], end_edge=edges[1], placed=placed, context=context, first=first, loop=None, final=final,

@@ -202,8 +202,7 @@ class OpenVolume:
         stated = self.measured.gear.spec.tolerance.thickness is not None
         if self.measured.loop is None or self.unworn_seen or stated or not level_open(self.measured):
             return 0.0
-        toothed = self.measured.cells.grid.toothed
-        lost = even_part(self.found.side_maps, level_open(self.measured), self.measured.loop.as_made_std, toothed)
+        lost = even_part(self.found.side_maps, level_open(self.measured), self.measured.cells.grid, self.measured.loop)
         return lost if lost > self.found.volume_std else 0.0
 
     def even_depth(self, side: Side) -> float:
@@ -211,7 +210,7 @@ class OpenVolume:
         if self.even_or_thin <= 0.0 or side not in level_open(self.measured):
             return 0.0
         assert self.measured.loop is not None
-        return even_depth(self.found.side_maps, side, self.measured.loop.as_made_std, self.measured.cells.grid.toothed)
+        return even_depth(self.found.side_maps, side, self.measured.cells.grid, self.measured.loop)
 
     @property
     def evenly(self) -> tuple[float, float]:

@@ -24,6 +24,7 @@ from gearwear.diagnose.gram import Gram
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.side_maps import SideMaps, own_spread, window_mean
 from gearwear.wear.own_level import strip_means, typical_heights
+from gearwear.wear.ridge import pitch_level
 from gearwear.wear.uncertainty import model_columns, noise_covariance, region_weights
 
 FOUND = 0.965
@@ -264,17 +265,17 @@ def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozense
     return float((lost * sheets.area[sheets.fillet :]).sum())
 
 
-def even_part(sheets: SideMaps, worn: frozenset[Side], as_made_std: tuple[float, float], toothed: Bools) -> float:
+def even_part(sheets: SideMaps, worn: frozenset[Side], grid: CellGrid, loop: Loop) -> float:
     """What the flanks of sides worn throughout have lost all over alike, mm³: as teeth cut thinner have on both sides. Parameters as of `even_depth`, of
     several sides."""
     lost = 0.0
     for side in worn:
-        seen = int(_of_side(sheets, side, toothed)[1].sum())
-        lost += even_depth(sheets, side, as_made_std, toothed) * seen * int(toothed.sum()) * sheets.flank_row
+        seen = int(_of_side(sheets, side, grid.toothed)[1].sum())
+        lost += even_depth(sheets, side, grid, loop) * seen * int(grid.toothed.sum()) * sheets.flank_row
     return lost
 
 
-def even_depth(sheets: SideMaps, side: Side, as_made_std: tuple[float, float], toothed: Bools) -> float:
+def even_depth(sheets: SideMaps, side: Side, grid: CellGrid, loop: Loop) -> float:
     """How much the flanks of a side worn throughout have lost all over alike, mm.
 
     Parameters
@@ -282,23 +283,27 @@ def even_depth(sheets: SideMaps, side: Side, as_made_std: tuple[float, float], t
     sheets : SideMaps
         Deviations from the as-made gear.
     side : Side
-    as_made_std : (float, float)
-        How well is known how high left and right flanks stood as they were made, mm.
-    toothed : (rows,) bool
-        Rows that have teeth.
+    grid : CellGrid
+    loop : Loop
+        Where the as-made gear comes from.
 
     Notes
     -----
     Nothing slides at the pitch point, and what slides leaves the face where nothing carries: a place that lost nothing by sliding there is on every
-    flank. The highest strip over the face, or up the profile, in its mean of the median of the teeth, tells how low even that lies: a single cell is
-    high by chance. Below 1.96 standard deviations of the level it is none.
+    flank. How low even that lies tells the profile as it goes on to the pitch point (`pitch_level`), for a column next to it has slid and a single cell is
+    high by chance; or the highest strip over the face or up the profile, in the median of the teeth, where that is higher. Below 1.96 standard deviations it
+    is none.
     """
-    flank, seen = _of_side(sheets, side, toothed)
+    flank, seen = _of_side(sheets, side, grid.toothed)
     typical = typical_heights(flank[seen]) if seen.any() else np.full(flank.shape[1:], np.nan)
-    strips = [means[often] for means, often in (strip_means(typical, axis) for axis in (0, 1))]
-    highest = float(np.concatenate(strips).max(initial=-np.inf))
-    highest = highest if math.isfinite(highest) else 0.0
-    return -highest if -highest > NORMAL_95 * as_made_std[side.index] else 0.0
+    strips = np.concatenate([means[often] for means, often in (strip_means(typical, axis) for axis in (0, 1))])
+    if not len(strips):
+        return 0.0
+    std, highest = loop.as_made_std[side.index], float(strips.max())
+    level = pitch_level(typical, grid, loop, side)
+    if level is not None and level[0] > highest:
+        highest, std = level[0], math.hypot(std, level[1])
+    return -highest if -highest > NORMAL_95 * std else 0.0
 
 
 def _of_side(sheets: SideMaps, side: Side, toothed: Bools) -> tuple[Floats, Bools]:

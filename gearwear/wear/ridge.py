@@ -106,9 +106,7 @@ def worn_level(sheets: SideMaps, grid: CellGrid, loop: Loop, side: Side, highest
     above = above_made(sheets, side)[grid.toothed]
     profile, often = strip_means(above, 0)
     std = loop.as_made_std[side.index]
-    still = grid.flank_column(loop.context.pitch_roll)
-    use = often.copy()
-    use[: max(int(np.argmin(np.where(often, profile, np.inf)[: int(still)])) if still else 0, 1)] = False
+    use = _slid(profile, often, grid, loop)
     nothing = np.zeros_like(profile)
     plain, hump = _best(profile, use, grid, loop, False), _best(profile, use, grid, loop, True)
     if hump is None or plain is None:
@@ -122,8 +120,7 @@ def worn_level(sheets: SideMaps, grid: CellGrid, loop: Loop, side: Side, highest
     # The highest strip is as wide as a column: what goes on to its middle may be higher.
     top = highest
     if free > 0:
-        reach = float(stdtrit(plain.free, SURE)) * max(math.sqrt(plain.left / plain.free), std)
-        top = max(plain.level + reach * plain.level_std, highest)
+        top = max(plain.level + float(stdtrit(plain.free, SURE)) * plain.known_to(std), highest)
     low, high = (min(max(level, 0.0), highest) for level in (beside - wide, beside + wide))
     if math.sqrt(max(plain.left - hump.left, 0.0)) <= least * scatter:
         return WornLevel(highest, low, top, None, nothing)
@@ -145,6 +142,35 @@ class _Profile:
     height: float
     height_std: float
     shape: Floats
+
+    def known_to(self, std: float) -> float:
+        """Standard deviation of the level, mm, by what is left of the columns and no less than `std` (mm) in each; of profiles with columns left over."""
+        return max(math.sqrt(self.left / self.free), std) * self.level_std
+
+
+def pitch_level(heights: Floats, grid: CellGrid, loop: Loop, side: Side) -> tuple[float, float] | None:
+    """How high a side stands at the pitch point as its profile goes on to it, and the standard deviation of that, mm; None of too few columns.
+
+    Parameters
+    ----------
+    heights : (rows, columns) float
+        Of the flanks of the side, in the median of the teeth, mm; nan where not seen.
+    grid, loop, side
+        As of `worn_level`; parameters of the fit likewise, without a ridge.
+    """
+    profile, often = strip_means(heights, 0)
+    plain = _best(profile, _slid(profile, often, grid, loop), grid, loop, False)
+    if plain is None or plain.free <= 0:
+        return None
+    return plain.level, plain.known_to(loop.as_made_std[side.index])
+
+
+def _slid(profile: Floats, often: Bools, grid: CellGrid, loop: Loop) -> Bools:
+    """Columns that were seen `often` and have slid since contact began: not the first, nor those nearer to the root than the deepest below the pitch point."""
+    still = int(grid.flank_column(loop.context.pitch_roll))
+    use = often.copy()
+    use[: max(int(np.argmin(np.where(often, profile, np.inf)[:still])) if still else 0, 1)] = False
+    return use
 
 
 def _best(profile: Floats, use: Bools, grid: CellGrid, loop: Loop, hump: bool) -> _Profile | None:
