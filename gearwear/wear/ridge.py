@@ -124,7 +124,7 @@ def worn_level(sheets: SideMaps, grid: CellGrid, loop: Loop, side: Side, highest
     low, high = (min(max(level, 0.0), highest) for level in (beside - wide, beside + wide))
     if math.sqrt(max(plain.left - hump.left, 0.0)) <= least * scatter:
         return WornLevel(highest, low, top, None, nothing)
-    height = beside if beside > NORMAL_95 * math.hypot(std, scatter * hump.level_std) else 0.0
+    height = beside if beside > math.hypot(NORMAL_95 * std, wide) else 0.0
     height = min(height, highest)
     proud = np.where(hump.shape > FOOT, np.maximum(profile - height, 0.0), 0.0)
     return WornLevel(height, min(low, height), max(high, height), PitchRidge(side, hump.height, scatter * hump.height_std), proud)
