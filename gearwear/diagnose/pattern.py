@@ -16,6 +16,7 @@ from scipy.fft import dct
 from scipy.special import fdtrc
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.quantity import counted
 from gearwear.design.surface import BORE, FILLET, FLANK, ROOT, TIP
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.space_waves import SpaceWave
@@ -89,7 +90,7 @@ class Pattern:
         """A sentence an engineer can use."""
         if self.in_space is not None:
             return f"{self.in_space.describe()}, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"
-        round_ = "the same on every tooth" if self.order == 0 else f"{self.order} waves round the gear"
+        round_ = f"{counted(self.order, 'wave')} round the gear" if self.order else "the same on every tooth"
         along = _less_than_a_wave(self.waves_z) or f"wavelength {face_width / self.waves_z:.1f} mm"
         profile = _less_than_a_wave(self.waves_profile) or f"{self.waves_profile:.1f} waves"
         return f"{round_}, flanks {self.sides}, {along} along z, {profile} along the profile, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"

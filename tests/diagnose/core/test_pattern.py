@@ -55,6 +55,14 @@ def test_what_has_no_wave_on_a_flank_is_called_none(waves, course):
     assert f", {course} along z, even along the profile, " in found.describe(15.0)
 
 
+@pytest.mark.parametrize(
+    ("order", "said"), [(0, "the same on every tooth"), (1, "1 wave round the gear"), (5, "5 waves round the gear")]
+)
+def test_waves_round_the_gear_are_counted_in_words(order, said):
+    pattern = Pattern(order, "alike", 0.0, 0.0, 0.002, 0.004, 1e-9, np.zeros(3))
+    assert pattern.describe(15.0).startswith(f"{said}, flanks alike, ")
+
+
 def test_two_orders_are_told_apart_the_stronger_first():
     one, rng = grid(), np.random.default_rng(3)
     at = sides_of(one)
