@@ -108,7 +108,8 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     if far or is_far(likeliest, scan.cells):
         scan, again = scan.located_again(likeliest)
         likeliest = scan.explained()
-    return replace(scan.closed(likeliest, again), undecided=tuple(scan.moved(other, again) for other in likeliest.others))
+    likeliest, *others = beside_smoothing((likeliest, *likeliest.others), scan.located, len(measured.scans), scan.cells)
+    return replace(scan.closed(likeliest, again), undecided=tuple(scan.moved(other, again) for other in others))
 
 
 Look = tuple[Loop, Cells]  # a loop, and the cells it was closed on
@@ -224,7 +225,6 @@ class _Scan:
         motion, located = FinalMotion.of(measured.placed, loop, measured.gear, again)
         cells = with_pits(located, self.grid) if measured.streamed is None else moved(self.cells, -loop.motion)
         named = beside_views(loop, measured.placed, self.cells, measured.noise)
-        named = beside_smoothing(named, located, len(measured.scans), self.cells)
         context = measured.context.with_pitch(named.context.pitch)
         return replace(
             measured, context=context, first=self.cells, loop=named, final=FinalPlace(located, motion.pose, cells)

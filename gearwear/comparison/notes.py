@@ -291,14 +291,14 @@ def scanner_unstated(measured: MeasuredGear) -> tuple[str, ...]:
     def tells(stated: Context) -> bool:
         return any(known[name].applies(context) and not known[name].applies(stated) for name in names)
 
-    lines = (
-        ["turntable = false, where no table turned the gear before a beam"] if tells(replace(context, turntable=False)) else []
-    )
+    lines = []
+    if tells(replace(context, turntable=False)):
+        lines.append("turntable = false, where no table turned the gear before a beam")
     if len(measured.scans) == 1 and tells(replace(context, stitched=False)):
         lines.append("stitched = false, where the file was not put together from views")
-    return (
-        (f"of what maker and scanner may both have done the design can tell: [scanner] {' and '.join(lines)}",) if lines else ()
-    )
+    if not lines:
+        return ()
+    return (f"of what maker and scanner may both have done the design can tell: [scanner] {' and '.join(lines)}",)
 
 
 def _off_reference(gear: Gear) -> tuple[str, ...]:

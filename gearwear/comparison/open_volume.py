@@ -207,10 +207,13 @@ class OpenVolume:
 
     def even_depth(self, side: Side) -> float:
         """How much of the depth of a worn flank its side has lost all over alike, mm, where that may be thinner teeth; 0 where it is none of that."""
-        if self.even_or_thin <= 0.0 or side not in level_open(self.measured):
-            return 0.0
-        assert self.measured.loop is not None
-        return even_depth(self.found.side_maps, side, self.measured.cells.grid, self.measured.loop)
+        return self._even_depths.get(side, 0.0) if self.even_or_thin > 0.0 else 0.0
+
+    @cached_property
+    def _even_depths(self) -> dict[Side, float]:
+        grid, loop = self.measured.cells.grid, self.measured.loop
+        assert loop is not None
+        return {side: even_depth(self.found.side_maps, side, grid, loop) for side in level_open(self.measured)}
 
     @property
     def evenly(self) -> tuple[float, float]:

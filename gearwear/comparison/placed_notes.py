@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -112,29 +113,32 @@ def _or_a_view(effect: FoundEffect) -> FoundEffect:
     return effect.or_one_of({VIEW_REGISTRATION})
 
 
-def beside_smoothing(loop: Loop, located: SurfacePoints, views: int, cells: Cells) -> Loop:
-    """A loop with what a scan that was smoothed leaves open: a form of the flanks may be what rounded its edges.
+def beside_smoothing(loops: Sequence[Loop], located: SurfacePoints, views: int, cells: Cells) -> tuple[Loop, ...]:
+    """Loops that were closed on a scan, with what it leaves open if it was smoothed: a form of the flanks may be what rounded its edges.
 
     A mean over neighbours bends what ends; a plane it leaves as it is, and a slope that all of a flank has is none of it.
     """
-    doubted = [or_smoothing(effect) for effect in loop.effects]
-    alike = all(one.alternatives == other.alternatives for one, other in zip(doubted, loop.effects, strict=True))
+    alike = all(or_smoothing(effect).alternatives == effect.alternatives for loop in loops for effect in loop.effects)
     if alike or not smoothing_of(located, views):
-        return loop
+        return tuple(loops)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
-    pairs = zip(doubted, loop.effects, strict=True)
-    return replace(loop, effects=tuple(new if _bends(loop.of_effect(old, flanks), flanks) else old for new, old in pairs))
+
+    def doubted(loop: Loop, effect: FoundEffect) -> FoundEffect:
+        return or_smoothing(effect) if _bends(loop.of_effect(effect, flanks), flanks) else effect
+
+    return tuple(replace(loop, effects=tuple(doubted(loop, effect) for effect in loop.effects)) for loop in loops)
 
 
 def _bends(field: Floats, flanks: SurfacePoints) -> bool:
     """Whether a field (n,) at points of flanks is more than a plane over roll and height on each side, but for `FLAT` of it."""
     left = whole = 0.0
-    for side in Side:
+    for side in np.unique(flanks.side):
         own = flanks.side == side
         roll, z = flanks.roll[own], flanks.position[own, 2]
         plane = np.column_stack([np.ones(len(z)), roll, z, roll * z])
         rest = field[own] - plane @ np.linalg.lstsq(plane, field[own], rcond=None)[0]
-        left, whole = left + float(rest @ rest), whole + float(((field[own] - field[own].mean()) ** 2).sum()) if len(z) else whole
+        left += float(rest @ rest)
+        whole += float(np.var(field[own])) * len(z)
     return left > FLAT**2 * whole
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -243,7 +244,7 @@ class PairResult:
         return backlash_from_normal(self.contact.driver, self.contact.driven, self.design.centre_distance, normal)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Results(Card):
     """A finished comparison.
 
@@ -306,7 +307,7 @@ class Results(Card):
         """What scanner, mounting and maker added; None where it was not looked for."""
         return self.measured.loop
 
-    @property
+    @cached_property
     def open_volume(self) -> OpenVolume:
         """What leaves the worn volume open."""
         return OpenVolume(self.measured, self.wear.found, self.wear.undecided, bool(self.before_files))

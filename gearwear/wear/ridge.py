@@ -112,7 +112,7 @@ def worn_level(sheets: SideMaps, grid: CellGrid, loop: Loop, side: Side, highest
     if hump is None or plain is None:
         return WornLevel(highest, highest if use.sum() > NUMBERS else 0.0, highest, None, nothing)
     free = hump.free
-    scatter = max(math.sqrt(hump.left / max(free, 1)), std)
+    scatter = hump.scatter(std)
     least = float(stdtrit(free, SURE)) if free > 0 else math.inf
     # A strip beside the pitch point has lost something; a row that has lost nothing is seen by itself.
     beside = max(highest_strip(above - hump.height * hump.shape), hump.level)
@@ -120,7 +120,7 @@ def worn_level(sheets: SideMaps, grid: CellGrid, loop: Loop, side: Side, highest
     # The highest strip is as wide as a column: what goes on to its middle may be higher.
     top = highest
     if free > 0:
-        top = max(plain.level + float(stdtrit(plain.free, SURE)) * plain.known_to(std), highest)
+        top = max(plain.level + float(stdtrit(plain.free, SURE)) * plain.scatter(std) * plain.level_std, highest)
     low, high = (min(max(level, 0.0), highest) for level in (beside - wide, beside + wide))
     if math.sqrt(max(plain.left - hump.left, 0.0)) <= least * scatter:
         return WornLevel(highest, low, top, None, nothing)
@@ -143,9 +143,9 @@ class _Profile:
     height_std: float
     shape: Floats
 
-    def known_to(self, std: float) -> float:
-        """Standard deviation of the level, mm, by what is left of the columns and no less than `std` (mm) in each; of profiles with columns left over."""
-        return max(math.sqrt(self.left / self.free), std) * self.level_std
+    def scatter(self, std: float) -> float:
+        """Standard deviation of a column, mm, by what is left of them and no less than `std`, mm."""
+        return max(math.sqrt(self.left / max(self.free, 1)), std)
 
 
 def pitch_level(heights: Floats, grid: CellGrid, loop: Loop, side: Side) -> tuple[float, float] | None:
@@ -162,7 +162,7 @@ def pitch_level(heights: Floats, grid: CellGrid, loop: Loop, side: Side) -> tupl
     plain = _best(profile, _slid(profile, often, grid, loop), grid, loop, False)
     if plain is None or plain.free <= 0:
         return None
-    return plain.level, plain.known_to(loop.as_made_std[side.index])
+    return plain.level, plain.scatter(loop.as_made_std[side.index]) * plain.level_std
 
 
 def _slid(profile: Floats, often: Bools, grid: CellGrid, loop: Loop) -> Bools:

@@ -132,8 +132,8 @@ def test_forms_of_a_smoothed_scan_may_be_its_rounded_edges_and_slopes_and_levels
         each = effect.candidate.effect.basis(cells.points.take(cells.seen), context, shape).shape[1]
         effects.append(replace(effect, candidate=replace(effect.candidate, shape=shape), amplitudes=np.full(each, 0.01)))
     loop = replace(real.loop, effects=tuple(effects), form=())
-    doubted = beside_smoothing(loop, means, 1, cells).effects
+    doubted = beside_smoothing((loop,), means, 1, cells)[0].effects
     assert [bool(effect.alternatives) for effect in doubted] == [True, True, False, False, False]
     assert set(doubted[0].alternatives) == {"edge_rounding"}
-    assert beside_smoothing(loop, points.with_deviation(0.006 * errors), 1, cells) is loop
-    assert beside_smoothing(loop, means, 2, cells) is loop
+    assert beside_smoothing((loop,), points.with_deviation(0.006 * errors), 1, cells)[0] is loop
+    assert beside_smoothing((loop,), means, 2, cells)[0] is loop

@@ -23,7 +23,8 @@ from gearwear.errors import InputError
 
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
 SCANNER_NUMBERS = ("axis_offset_mm", "noise_um", "scale_ppm_max", "scale_std_ppm")
-SCANNER_KEYS = (*SCANNER_NUMBERS, "turntable", "stitched")
+SCANNER_ANSWERS = ("turntable", "stitched")
+SCANNER_KEYS = (*SCANNER_NUMBERS, *SCANNER_ANSWERS)
 DATUM_KEYS = (
     "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "temperature_std_K", "material", "expansion_ppm_K",
     "artefact",
@@ -64,7 +65,7 @@ def parse_scanner(table: dict[str, Any]) -> ScannerSpec:
     """``[scanner]``: µm and ppm here, mm and shares inside."""
     check_keys("[scanner]", table, SCANNER_KEYS)
     offset, noise, scale, scale_std = (number_or("scanner", table, key, None) for key in SCANNER_NUMBERS)
-    turntable, stitched = (yes_or_no("scanner", table, key, True) for key in ("turntable", "stitched"))
+    turntable, stitched = (yes_or_no("scanner", table, key, True) for key in SCANNER_ANSWERS)
     return ScannerSpec(
         offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale, 1e-6 * (scale_std or 0.0),
         turntable, stitched,
