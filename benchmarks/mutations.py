@@ -365,6 +365,8 @@ MUTATIONS = [
         ("wear/cell_means.py", "LONE * usual[:, None]", "LONE * noise", "wear/test_strays_in_wear.py"),
         ("diagnose/effects/scan_drift.py", "return context.turntable", "return True", "comparison/test_stated_scanner.py"),
         ("comparison/measured_gear.py", "turntable=design.scanner.turntable", "turntable=True", "comparison/test_stated_scanner.py"),
+        ("comparison/notes.py", "BY_CHANCE = 1e-3", "BY_CHANCE = 0.05", "comparison/test_stated_scanner.py"),
+        ("comparison/notes.py", ")[2 : (len(index) + 1) // 2]", ")[1 : (len(index) + 1) // 2]", "comparison/test_stated_scanner.py"),
         ("comparison/notes.py", "*scanner_unstated(measured),", "", "comparison/test_stated_scanner.py"),
         ("placing/root.py", "SEEN = 0.05", "SEEN = 0.0", "placing/test_root.py"),
         ("comparison/placed_notes.py", "if alike or not smoothing_of(located, views):", "if alike:", "comparison/test_notes.py"),

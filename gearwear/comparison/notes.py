@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.comparison.open_volume import even_loss, level_open, thinning_open
 from gearwear.comparison.placed_notes import THINNED, alone
@@ -20,6 +21,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, TIP
 from gearwear.diagnose.effects import named_effects
 from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.effects.pitch import EFFECT as PITCH
 from gearwear.diagnose.found import Loop
 from gearwear.loaded.study import load_left_out
 from gearwear.placing.datum import LOW, Datum, bends_otherwise, taken_for_unworn
@@ -32,6 +34,8 @@ SECTION_WEIGHED = "[weighing] is left out: the gear was weighed, but a planar se
 """Said of a weighed gear of which only a section was scanned."""
 ELSEWHERE = 0.2
 """Share of tips, fillets or roots that must be seen for a coat to show on them."""
+BY_CHANCE = 1e-3
+"""Chance below which one wave of pitch errors is more than that."""
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -72,6 +76,7 @@ def notes_of(
         *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn) else ()),
         *worn_notes(measured, wear, unworn),
         *contact_note(pair),
+        *like_a_table(measured.loop, design.scanner),
         *((seam_note(seam),) if seam is not None else ()),
         *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
         *edge_notes(wear),
@@ -299,6 +304,36 @@ def scanner_unstated(measured: MeasuredGear) -> tuple[str, ...]:
     if not lines:
         return ()
     return (f"of what maker and scanner may both have done the design can tell: [scanner] {' and '.join(lines)}",)
+
+
+def like_a_table(loop: Loop | None, stated: ScannerSpec) -> tuple[str, ...]:
+    """That pitch errors go round the gear as a table's error does, of which the design says that there was none."""
+    if loop is None or stated.turntable:
+        return ()
+    pitch = [effect.parameters[PITCH.parameters[0].name].value for effect in loop.effects if effect.name == PITCH.name]
+    orders = [wave_order(np.asarray(index)) for index in pitch]
+    return tuple(
+        f"pitch errors are {counted(order, 'wave')} round the gear by more than chance, as the error of a table is, and the design says that none turned it: "
+        "were it one, the gear would run more evenly than told"
+        for order in orders
+        if order is not None
+    )
+
+
+def wave_order(index: Floats) -> int | None:
+    """How many times round the gear the index of teeth (teeth,) waves, if one wave takes more of it than of chance alone any would; None if none does.
+
+    By Fisher's g (1929), the largest share of the periodogram: of m orders it is above g with a chance of at most m (1 − g)^(m − 1). Once round is a gear cut
+    off its centre, and not asked. Teeth that are not known are nan.
+    """
+    known = np.isfinite(index)
+    if not known.any():
+        return None
+    power = np.abs(np.fft.rfft(np.where(known, index - index[known].mean(), 0.0)))[2 : (len(index) + 1) // 2] ** 2
+    if not power.any():
+        return None
+    share = float(power.max() / power.sum())
+    return int(power.argmax()) + 2 if len(power) * (1.0 - share) ** (len(power) - 1) < BY_CHANCE else None
 
 
 def _off_reference(gear: Gear) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ import pytest
 
 import gearwear as gw
 from gearwear.comparison.contact_readings import ReadOtherwise
+from gearwear.comparison.notes import wave_order
 from gearwear.comparison.stations import compare
 from gearwear.design.scan_spec import ScannerSpec
 from gearwear.diagnose.effects import named_effects
@@ -46,6 +47,26 @@ def test_pitch_errors_that_cannot_be_the_tables_leave_nothing_of_the_contact_ope
     assert unsaid.limits is not None and ReadOtherwise.EITHER in unsaid.limits.why
     assert said.limits is None or ReadOtherwise.EITHER not in said.limits.why
     assert said.contact.peak_to_peak_um == pytest.approx(float(np.ptp(WAVE)), rel=0.25)
+
+
+def test_pitch_errors_that_wave_as_a_table_errs_are_said_to_where_there_is_none(told):
+    unsaid, said = told
+    assert any("2 waves round the gear" in note for note in said.notes)
+    assert not any("waves round the gear" in note for note in unsaid.notes)
+
+
+@pytest.mark.parametrize("teeth", [12, 13, 40])
+def test_a_wave_is_told_from_chance_and_from_a_gear_cut_off_its_centre(teeth):
+    """Of 2000 gears with white pitch errors at most some 2 wave, and an eccentric one does not; one of twice the scatter of the rest does, one tooth unknown."""
+    random, angle = np.random.default_rng(3), 2.0 * np.pi * np.arange(teeth) / teeth
+    assert sum(wave_order(random.normal(size=teeth)) is not None for _ in range(2000)) <= 8
+    assert wave_order(20.0 * np.cos(angle) + random.normal(size=teeth)) is None
+    wave = 20.0 * np.cos(3.0 * angle + 0.5) + random.normal(size=teeth)
+    assert wave_order(wave) == 3
+    if teeth > 20:
+        wave[4] = np.nan
+        assert wave_order(wave) == 3
+    assert wave_order(np.full(teeth, np.nan)) is None and wave_order(np.zeros(teeth)) is None
 
 
 @pytest.mark.parametrize(
