@@ -313,8 +313,7 @@ def like_a_table(loop: Loop | None, stated: ScannerSpec) -> tuple[str, ...]:
     pitch = [effect.parameters[PITCH.parameters[0].name].value for effect in loop.effects if effect.name == PITCH.name]
     orders = [wave_order(np.asarray(index)) for index in pitch]
     return tuple(
-        f"pitch errors are {counted(order, 'wave')} round the gear by more than chance, as the error of a table is, and the design says that none turned it: "
-        "were it one, the gear would run more evenly than told"
+        f"pitch errors are {counted(order, 'wave')} round the gear, as a table leaves, and the design says that none turned it"
         for order in orders
         if order is not None
     )
