@@ -71,12 +71,12 @@ def notes_of(
     gear, unworn = measured.gear, before is not None
     return (
         *measured.doubts,  # what changes the meaning of numbers first: a terminal shows the first few
+        *like_a_table(measured.loop, design.scanner),
         *off_the_drawing(measured.loop),
         *take_each_other_back(measured.loop),
         *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn) else ()),
         *worn_notes(measured, wear, unworn),
         *contact_note(pair),
-        *like_a_table(measured.loop, design.scanner),
         *((seam_note(seam),) if seam is not None else ()),
         *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
         *edge_notes(wear),
