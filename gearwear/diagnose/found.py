@@ -31,6 +31,7 @@ from gearwear.diagnose.parameter import ParameterEstimate, Role
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
+from gearwear.diagnose.smooth_form import as_smooth_form
 from gearwear.diagnose.space_waves import SpaceWave
 from gearwear.diagnose.taken_back import beside_pose, taken_back
 
@@ -356,7 +357,7 @@ def account(
                 amplitudes=amplitudes[part],
                 parameters=parameters,
                 alternatives=_or_views(
-                    alternatives(problem, model, i), fit, problem.context, candidate, amplitudes[part], evidence[i].size
+                    _explaining(fit, problem, model, i), fit, problem.context, candidate, amplitudes[part], evidence[i].size
                 ),
                 evidence=evidence[i],
                 rms_before=steps[i][0],
@@ -442,6 +443,11 @@ def _with_taken_back(fit: Fit, problem: Problem, model: Model, evidence: list[Ev
     told = dict(zip(at, back.tolist(), strict=True))
     together = np.where(fit.cells.seen, fields[:, back].sum(axis=1), 0.0) if back.any() else None
     return [replace(one, taken_back=told.get(i, False)) for i, one in enumerate(evidence)], together
+
+
+def _explaining(fit: Fit, problem: Problem, model: Model, index: int) -> tuple[str, ...]:
+    """What else of the catalogue would explain what an effect does."""
+    return tuple(sorted({*alternatives(problem, model, index), *as_smooth_form(fit, problem, model, index)}))
 
 
 def _or_views(

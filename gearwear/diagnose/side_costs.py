@@ -48,9 +48,15 @@ class SideCosts:
         return replace(self, by_sides={worn: cost for worn, cost in self.by_sides.items() if not worn & ran})
 
     @property
+    def _chosen_cost(self) -> float:
+        """What other hypotheses are held against. Forms of the left and the right flanks apart are no evidence against wear of a side: whatever it lost, they
+        explain better, having any shape. Where only they make no side worn the cheapest, it is what sides cut alike cost."""
+        return max(self.by_sides[self.chosen], self.alike if self.chosen == NO_SIDE and math.isfinite(self.alike) else 0.0)
+
+    @property
     def ruled_out(self) -> frozenset[frozenset[Side]]:
         """Hypotheses that cost so much more than the chosen one that more cells would say the same."""
-        least = self.by_sides[self.chosen]
+        least = self._chosen_cost
         least += max(rules().close, rules().beyond_doubt * least)
         return frozenset(worn for worn, cost in self.by_sides.items() if cost > least)
 
@@ -66,7 +72,7 @@ class SideCosts:
         Both sides made with what both may have lost alike is no better told by how well it fits than their class makes such a form uncommon.
         """
         taken, both = self.chosen, frozenset(Side)
-        limit = self.by_sides[taken] + rules().close
+        limit = self._chosen_cost + rules().close
         more = self.uncommon if taken == NO_SIDE else 0.0
         return tuple(
             worn for worn, cost in self.by_sides.items() if worn != taken and cost - (more if worn == both else 0.0) < limit

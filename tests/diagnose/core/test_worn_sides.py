@@ -185,6 +185,17 @@ def test_both_sides_are_worn_only_where_that_beats_a_form_of_both_by_more_than_c
     assert costs.not_excluded == ((LEFT, BOTH) if worn == NO_SIDE else (NO_SIDE, LEFT))
 
 
+@pytest.mark.parametrize(("alike", "open_sides"), [(100.0, ()), (110.9, ()), (111.1, (LEFT,)), (131.1, (LEFT, BOTH))])
+def test_forms_of_the_two_sides_apart_do_not_exclude_wear_that_sides_cut_alike_do_not(alike, open_sides):
+    """A form of its own explains whatever a side has lost, and better by 20 than any shape of wear; another side is excluded by those that are cut alike."""
+    costs = SideCosts({NO_SIDE: 100.0, LEFT: 120.0, BOTH: 140.0, RIGHT: 190.0}, alike)
+    assert (costs.chosen, costs.not_excluded) == (NO_SIDE, open_sides)
+    assert costs.ruled_out == {LEFT, BOTH, RIGHT} - set(open_sides)
+    assert (
+        SideCosts({NO_SIDE: 100.0, LEFT: 80.0, BOTH: 90.0}, alike).not_excluded == ()
+    )  # a side is worn, whatever the others cost
+
+
 @pytest.mark.parametrize(("uncommon", "told"), [(0.0, ()), (2.9, ()), (3.1, (BOTH,))])
 def test_what_flanks_of_their_class_are_hardly_made_with_both_sides_may_have_lost(uncommon, told):
     """It fits better by 12 that they were made so; where they hardly are, wear is not excluded, and of one side nothing is said by that."""
