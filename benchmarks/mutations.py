@@ -125,6 +125,8 @@ MUTATIONS = [
         ("diagnose/elimination.py", "e.accepted or e.faint or", "e.accepted or", "diagnose/core/test_elimination.py"),
         ("diagnose/worn_sides.py", "for side in Side if apart.cost < made else ():", "for side in ():", "diagnose/core/test_of_the_part.py"),
         ("diagnose/worn_sides.py", "/ tolerance) ** 2 / len(Side)", "/ tolerance) ** 2", "diagnose/core/test_worn_sides.py"),
+        ("diagnose/found.py", "told and len(problem.context.worn) < len(Side)", "told", "diagnose/core/test_made_height.py"),
+        ("diagnose/found.py", "told and len(problem.context.worn) < len(Side)", "False", "diagnose/core/test_made_height.py"),
         ("diagnose/found.py", "if told else 0.0", "if False else 0.0", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "set(Side) - worn or set(Side)", "set(Side)", "diagnose/core/test_made_height.py"),
         ("diagnose/made_height.py", "float(mean**2 - variance)", "float(mean**2)", "diagnose/core/test_made_height.py"),

@@ -372,11 +372,13 @@ def account(
     levels = tuple(one for one, told in zip(found, evidence, strict=True) if _unnamed(one.candidate, told, problem.context))
     named = tuple(found[len(levels) :])
     told = problem.context.fillets_told and ROOT_FORM not in {candidate.name for candidate in model}
+    # Without a sound side its teeth alone tell how well a gear was cut.
+    one_sound = told and len(problem.context.worn) < len(Side)
     off = [
         fit.dictionary.take(one.candidate.columns) @ one.amplitudes
         for one in found
         if one.kind is Kind.MANUFACTURE
-        and not (told and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
+        and not (one_sound and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
     ]
     made = MadeHeight()
     if worn := problem.context.open_sides:

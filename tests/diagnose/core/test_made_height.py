@@ -17,7 +17,7 @@ from gearwear.diagnose.pattern import Pattern
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.diagnose.plain import PLAIN
 from tests.placing.placing import designed
-from tests.synthetic import Recipe, SlidingWear, make_scan
+from tests.synthetic import Effect, Recipe, SlidingWear, make_scan
 
 PINION = designed()
 LEFT = frozenset({Side.LEFT})
@@ -144,3 +144,20 @@ def test_a_worn_side_is_known_no_better_than_fillets_stand_by_their_flanks(off_u
     searched = tuple(effect for effect in PLAIN if effect.name != ROOT_FORM)
     loop = close_loop(low, noise(low), make_context(low, np.eye(3), False), searched, worn=LEFT)
     assert 0.8 * off_um - 0.1 < 1e3 * loop.made.of(Side.LEFT) < 1.05 * off_um + 0.3
+
+
+@pytest.mark.parametrize("sides", [(1,), (1, -1)], ids=["one side", "both"])
+def test_teeth_out_of_pitch_tell_how_well_a_gear_was_cut_where_no_side_is_sound(sides):
+    """Indices of ±9 µm, drawn: where a sound side shows the forms, fillets tell where its teeth stand; where none does, a flank may be as far off as an index."""
+    index = np.random.default_rng(8).normal(0.0, 9.0, PINION.teeth)
+    index -= index.mean()
+    share = tuple((1.0 + 0.3 * np.sin(np.arange(PINION.teeth) ** 2)).tolist())
+    wear = tuple(SlidingWear(60.0, side, share, "archard") for side in sides)
+    recipe = Recipe(jitter=1.0, noise_um=6.0, pose="none", wear=wear, effects=(Effect("pitch", {"index_um": tuple(index)}),))
+    located = locate(make_scan(recipe.of_size(20_000), 3).points, PINION)
+    cells = bin_points(located, CellGrid.for_scan(PINION, len(located)), clip=0.3)
+    loop = close_loop(cells, noise(cells), make_context(cells, np.eye(3), False), PLAIN)
+    assert {int(side) for side in loop.worn_sides} == set(sides)
+    off = 1e-3 * np.sqrt(0.5 * np.mean((index - np.roll(index, 1)) ** 2)) * np.cos(PINION.transverse_pressure_angle)
+    low, high = (0.0, 0.25 * off) if len(sides) == 1 else (0.85 * off, 1.15 * off)
+    assert low <= loop.made.std <= high
