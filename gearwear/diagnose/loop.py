@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
-from gearwear.design.side import Side
+from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.active_face import active_faces
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
@@ -41,6 +41,7 @@ from gearwear.diagnose.untold import with_untold
 from gearwear.diagnose.worn_flanks import worn_flanks
 from gearwear.diagnose.worn_sides import side_costs
 from gearwear.placing.cells import Cells
+from gearwear.placing.datum import choose_datum
 from gearwear.placing.edges import rounded_ends
 
 NO_EVIDENCE = 1e6
@@ -182,6 +183,7 @@ def _closed(
             told |= (cells.points.surface <= FILLET) & face.worn(cells.points, cells.grid.row_height)
         others_alone = replace(plain.fit, cells=cells.without(told)) if told.any() else plain.fit
         costs = side_costs(others_alone, plain.problem, plain.model, noise, ruled_out, look).beside(ran)
+        costs = replace(costs, bends=sides_of(choose_datum(cells, noise).worn_side))
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == alone else searched_without(sides), noise, always, waves)

@@ -26,12 +26,15 @@ class SideCosts:
         By how much a form such as both sides may have lost is less common among flanks of the gear's class than none.
     pitch : dict of frozenset of Side to float
         Roll of the pitch point, mm, of hypotheses that are cheapest with one off the reference circle.
+    bends : frozenset of Side
+        The side that bends so much more than the other that it was no datum.
     """
 
     by_sides: Mapping[frozenset[Side], float]
     alike: float = math.inf
     uncommon: float = 0.0
     pitch: Mapping[frozenset[Side], float] = field(default_factory=dict)
+    bends: frozenset[Side] = NO_SIDE
 
     @property
     def chosen(self) -> frozenset[Side]:
@@ -47,18 +50,23 @@ class SideCosts:
             return self
         return replace(self, by_sides={worn: cost for worn, cost in self.by_sides.items() if not worn & ran})
 
-    @property
-    def _chosen_cost(self) -> float:
-        """What other hypotheses are held against. Forms of the left and the right flanks apart are no evidence against wear of a side: whatever it lost, they
-        explain better, having any shape. Where only they make no side worn the cheapest, it is what sides cut alike cost."""
-        return max(self.by_sides[self.chosen], self.alike if self.chosen == NO_SIDE and math.isfinite(self.alike) else 0.0)
+    def _held_against(self, sides: frozenset[Side]) -> float:
+        """What a hypothesis that is not chosen is held against: the cost of the one that is. Where no side is, but for forms of left and right apart, these are
+        no evidence against wear of the side that bends more than the other: they explain whatever it lost better, having any shape. That is held against
+        what sides cut alike cost."""
+        chosen = self.by_sides[self.chosen]
+        by_forms_apart = self.chosen == NO_SIDE and sides and sides == self.bends
+        return max(chosen, self.alike) if by_forms_apart and math.isfinite(self.alike) else chosen
 
     @property
     def ruled_out(self) -> frozenset[frozenset[Side]]:
         """Hypotheses that cost so much more than the chosen one that more cells would say the same."""
-        least = self._chosen_cost
-        least += max(rules().close, rules().beyond_doubt * least)
-        return frozenset(worn for worn, cost in self.by_sides.items() if cost > least)
+
+        def limit(sides: frozenset[Side]) -> float:
+            least = self._held_against(sides)
+            return least + max(rules().close, rules().beyond_doubt * least)
+
+        return frozenset(worn for worn, cost in self.by_sides.items() if cost > limit(worn))
 
     @property
     def beyond_doubt(self) -> bool:
@@ -72,8 +80,9 @@ class SideCosts:
         Both sides made with what both may have lost alike is no better told by how well it fits than their class makes such a form uncommon.
         """
         taken, both = self.chosen, frozenset(Side)
-        limit = self._chosen_cost + rules().close
         more = self.uncommon if taken == NO_SIDE else 0.0
-        return tuple(
-            worn for worn, cost in self.by_sides.items() if worn != taken and cost - (more if worn == both else 0.0) < limit
-        )
+
+        def above(worn: frozenset[Side], cost: float) -> float:
+            return cost - (more if worn == both else 0.0) - self._held_against(worn)
+
+        return tuple(worn for worn, cost in self.by_sides.items() if worn != taken and above(worn, cost) < rules().close)

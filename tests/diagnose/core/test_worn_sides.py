@@ -185,15 +185,16 @@ def test_both_sides_are_worn_only_where_that_beats_a_form_of_both_by_more_than_c
     assert costs.not_excluded == ((LEFT, BOTH) if worn == NO_SIDE else (NO_SIDE, LEFT))
 
 
-@pytest.mark.parametrize(("alike", "open_sides"), [(100.0, ()), (110.9, ()), (111.1, (LEFT,)), (131.1, (LEFT, BOTH))])
-def test_forms_of_the_two_sides_apart_do_not_exclude_wear_that_sides_cut_alike_do_not(alike, open_sides):
-    """A form of its own explains whatever a side has lost, and better by 20 than any shape of wear; another side is excluded by those that are cut alike."""
-    costs = SideCosts({NO_SIDE: 100.0, LEFT: 120.0, BOTH: 140.0, RIGHT: 190.0}, alike)
-    assert (costs.chosen, costs.not_excluded) == (NO_SIDE, open_sides)
-    assert costs.ruled_out == {LEFT, BOTH, RIGHT} - set(open_sides)
+@pytest.mark.parametrize(("alike", "told"), [(100.0, ()), (110.9, ()), (111.1, (LEFT,)), (181.1, (LEFT,))])
+def test_forms_of_the_two_sides_apart_do_not_exclude_wear_of_the_side_that_bends(alike, told):
+    """A form of its own explains whatever a side has lost, and better by 20 than any shape of wear; the others are excluded all the same."""
+    costs = SideCosts({NO_SIDE: 100.0, LEFT: 120.0, BOTH: 140.0, RIGHT: 190.0}, alike, bends=LEFT)
+    assert (costs.chosen, costs.not_excluded) == (NO_SIDE, told)
+    assert costs.ruled_out == {LEFT, BOTH, RIGHT} - set(told)
+    assert replace(costs, bends=NO_SIDE).not_excluded == ()
     assert (
-        SideCosts({NO_SIDE: 100.0, LEFT: 80.0, BOTH: 90.0}, alike).not_excluded == ()
-    )  # a side is worn, whatever the others cost
+        SideCosts({NO_SIDE: 100.0, LEFT: 90.0, RIGHT: 80.0}, alike, bends=LEFT).not_excluded == ()
+    )  # a side is worn, whatever the other costs
 
 
 @pytest.mark.parametrize(("uncommon", "told"), [(0.0, ()), (2.9, ()), (3.1, (BOTH,))])
