@@ -47,7 +47,9 @@ def with_seam(measured: MeasuredGear, thickness: SectionThickness) -> SectionThi
     if abs(by) < 0.5 * abs(closure) * thickness.radius:  # all of it, or next to nothing where it goes through a gap
         return thickness
     moved = _moved(thickness.unmeasured, change.mean(axis=1))
-    told, other = thickness.thinnest(), replace(thickness, arc=thickness.arc + change, unmeasured=moved).thinnest()
+    surfaces = None if thickness.surfaces is None else thickness.surfaces.shifted(change)
+    otherwise = replace(thickness, arc=thickness.arc + change, unmeasured=moved, surfaces=surfaces)
+    told, other = thickness.thinnest(), otherwise.thinnest()
     assert told is not None and other is not None
     if tooth not in (told.tooth, other.tooth):
         return thickness  # the thinnest is another one, drift or not

@@ -17,6 +17,7 @@ from gearwear.comparison.seam import with_seam
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import MADE, MEASURED
 from gearwear.diagnose.found import Loop
+from gearwear.wear.by_surfaces import surface_teeth
 from gearwear.wear.flank_arcs import worn_arcs
 from gearwear.wear.hollows import find_hollows, pitted
 from gearwear.wear.regions import Wear
@@ -39,7 +40,9 @@ def thickness_and_changes(
     thickness = with_seam(measured, thickness)
     if effects is None:
         return thickness, ()
-    raw = replace(corrected_thickness(measured, measured.raw_sections), hollows=thickness.hollows)
+    raw = corrected_thickness(measured, measured.raw_sections)
+    surfaces = None if thickness.surfaces is None else thickness.surfaces.shifted(raw.arc - thickness.arc)
+    raw = replace(raw, hollows=thickness.hollows, surfaces=surfaces)
     return thickness, thickness_changes(measured, effects, thickness, raw)
 
 
@@ -104,6 +107,7 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
     return replace(
         thickness,
         hollows=hollows,
+        surfaces=surface_teeth(thickness.arc, thickness.as_made, arcs, measured.worn_sides, pits),
         unmeasured=unmeasured_teeth(thickness, wear, arcs),
         pit_bottom=_pit_bottom(thickness, wear, pits),
     )

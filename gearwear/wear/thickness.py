@@ -16,10 +16,11 @@ from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.twist import Segment, from_end, segments
-from gearwear.placing.edges import at_either_end, least_drop, typical_fall
 from gearwear.wear.bend import LEAST_SPREAD, without_ridge
+from gearwear.wear.by_surfaces import WIDER, SurfaceTeeth
 from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
+from gearwear.wear.section_ends import beyond_flanks, rounded_off
 from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.tooth_summary import DriftSeam, MostLost, ThinnestTooth, ToothSummary, UnmeasuredTeeth
 from gearwear.wear.windows import about_places, running_sum
@@ -30,9 +31,6 @@ ENOUGH_POINTS = 12
 are pooled until they do."""
 MEAN_OF = 5
 """Sections over which a mean may be taken."""
-LEAST_SHARE_AT_ENDS = 0.5
-"""Share of the points usual in a section that one at an end of the face must have on most teeth: flanks that end askew or are rounded off stop
-short of it, and what is seen there is the edge."""
 NOISIER, CHANCE = 0.1, 4.0
 """Share, and standard deviations, by which points of sections must scatter more than those of all flanks and fillets to have a noise of their own; of
 the variance."""
@@ -80,6 +78,8 @@ class SectionThickness(Card):
         Arc per deviation of a flank.
     hollows : Hollows or None
         What the pooled sections of worn teeth hide.
+    surfaces : SurfaceTeeth or None
+        Teeth with worn places by the surfaces of their flanks.
     made_std : (teeth,) float or None
         How well is known how thick each tooth was made, mm of arc: it is in what was lost, and not in what is left. None: no less well than all.
     drawn, made : (teeth, n_z) float or None
@@ -114,6 +114,7 @@ class SectionThickness(Card):
     turn: float = 1.0
     pooled_on: Ints | None = None
     hollows: Hollows | None = None
+    surfaces: SurfaceTeeth | None = None
     made_std: Floats | None = None
     drawn: Floats | None = None
     made: Floats | None = None
@@ -179,12 +180,14 @@ class SectionThickness(Card):
         taken = ndimage.maximum_filter1d(gone, 2 * (self.pooled // 2) + 1, axis=1)
         return replace(self, arc=np.where(taken, np.nan, self.arc)) if gone.any() else self
 
-    def _least(self, arc: Floats, drawn: Floats | None = None, made: Floats | None = None) -> tuple[Least, Floats, Floats]:
-        """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved; its
+    def _least(self, off: Floats, drawn: Floats | None = None, made: Floats | None = None) -> tuple[Least, Floats, Floats]:
+        """The least of arcs less what they are counted `off`, (teeth, n_z) mm, on each tooth and of all, with what is unresolved and standard deviations; its
         height on each tooth, and what is `drawn` there, (teeth,) mm.
 
-        How arcs vary as `drawn` and `made`, (teeth, n_z) mm, is known, and no matter of chance: the least of that counts between the places, too.
+        How arcs vary as `drawn` and `made`, (teeth, n_z) mm, is known, and no matter of chance: the least of that counts between the places, too. Where
+        surfaces tell of teeth as well, it is of both.
         """
+        arc = self.arc - off
         # Sections that share no points, side by side; the rest of a row is empty.
         teeth, n = arc.shape
         widths = self.widths
@@ -228,11 +231,29 @@ class SectionThickness(Card):
         curve = least.curve
         overall = math.hypot(least.overall_std, about[curve], 0.5 * (deeper[curve] - hidden[curve]), self.common_std)
         value = least.overall - float(deeper[curve])
-        return (
-            replace(least, value=least.value - deeper, std=std, overall=value, overall_std=overall),
-            self.z[place[rows, least.at]],
-            drawn_there[rows, least.at],
-        )
+        least = replace(least, value=least.value - deeper, std=std, overall=value, overall_std=overall)
+        at_z, drawn_at = self.z[place[rows, least.at]], drawn_there[rows, least.at]
+        return (least, at_z, drawn_at) if self.surfaces is None else self._with_surfaces(least, at_z, drawn_at, off, drawn, about)
+
+    def _with_surfaces(
+        self, least: Least, at_z: Floats, drawn_at: Floats, off: Floats, drawn: Floats, about: Floats
+    ) -> tuple[Least, Floats, Floats]:
+        """`_least` by the sections, with what surfaces tell of some teeth: the mean of both by how well each is known, and half of what they differ in its
+        standard deviation, and what neither resolves, of the sections `about` theirs; of all teeth the least of these."""
+        assert self.surfaces is not None
+        of = self.surfaces.teeth
+        value, std, at_z, drawn_at = least.value.copy(), least.std.copy(), at_z.copy(), drawn_at.copy()
+        by_surface, its, at = self.surfaces.shifted(-off).least(self.common_std)
+        by_sections = std[of] ** 2 - about[of] ** 2
+        share, apart = by_sections / (by_sections + its**2), by_surface - value[of]
+        value[of] += share * apart
+        near = abs(np.arange(len(self.z)) - at[:, None]) <= self.widths[of, None] // 2
+        hidden = np.where(near, self._unresolved[of], 0.0).max(axis=1)
+        std[of] = np.sqrt(share * (WIDER * its) ** 2 + (0.5 * apart) ** 2 + hidden**2)
+        at_z[of], drawn_at[of] = self.z[at], drawn[of, at]
+        of_all = least_of_curves(value[:, None], std[:, None])  # of teeth worn alike the lowest is low by its luck
+        of_all = replace(least, value=value, std=std, curve=of_all.curve, overall=of_all.overall, overall_std=of_all.overall_std)
+        return of_all, at_z, drawn_at
 
     @cached_property
     def _unresolved(self) -> Floats:
@@ -293,11 +314,11 @@ class SectionThickness(Card):
 
     @cached_property
     def _most_lost(self) -> tuple[Least, Floats, Floats]:
-        return self._least(self.arc - self.as_made)
+        return self._least(self.as_made)
 
     @cached_property
     def _least_arc(self) -> tuple[Least, Floats, Floats]:
-        return self._least(self.arc, self.drawn, self.made)
+        return self._least(np.zeros_like(self.arc), self.drawn, self.made)
 
     @cached_property
     def _teeth(self) -> tuple[ToothSummary, ...]:
@@ -346,6 +367,9 @@ class SectionThickness(Card):
         other = None if self.unmeasured is None else self.unmeasured.least
         if other is not None:
             low, high = min(low, other.low), min(high, other.high)
+        if self.surfaces is not None:  # they may be right where sections hide a hollow
+            by_surface, its, _ = self.surfaces.least(self.common_std)
+            low = min(low, float((by_surface - NORMAL_95 * WIDER * its).min()))
         low, high = low + self.otherwise[0], high + self.otherwise[1]
         if self.seam is not None:
             low, high = min(low, self.seam.low), max(high, self.seam.high)
@@ -386,7 +410,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
         number = moments[0].astype(np.int64)
         for rows, stretch in parts:
             ended = np.zeros(len(heights), dtype=bool)
-            ended[rows] = _beyond_flanks(number[:, :, rows], heights[rows], stretch)
+            ended[rows] = beyond_flanks(number[:, :, rows], heights[rows], stretch)
             moments = np.where(ended, 0.0, moments)
     stretches = [rows for rows, _ in parts]
     pooled = _sections_to_pool(moments[0], stretches)
@@ -395,7 +419,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     flank, variance, count, scatter, on = _line_at(straight, band.half, stretches, pooled)
     noise = _own_noise(scatter, count, noise, pooled)
     for rows in stretches:
-        flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
+        flank[:, :, rows][:, :, rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
     generated = float(gear.thickness(r))
     nominal = generated + r / gear.base_radius * gear.drawn_excess(float(gear.roll_length(r)))
@@ -439,28 +463,6 @@ def _starts(count: int, width: int) -> Ints:
     half = count // width // 2
     lower = width * np.arange(half)
     return np.unique(np.concatenate([lower, [half * width], count - half * width + lower]).clip(0, count - 1)).astype(np.int64)
-
-
-def _beyond_flanks(count: Ints, heights: Floats, stretch: Segment) -> Bools:
-    """Sections at either end of a stretch of the face where most flanks have ended, (n_z,)."""
-    if len(heights) < 2:
-        return np.zeros(len(heights), dtype=bool)
-    step = heights[1] - heights[0]
-    inside = np.minimum(heights + 0.5 * step, stretch.high) - np.maximum(heights - 0.5 * step, stretch.low)
-    seen = count.sum(axis=2) > 0
-    if not seen.any():
-        return np.zeros(len(heights), dtype=bool)
-    density = np.median(count[seen], axis=0) / np.maximum(inside, 0.1 * step)
-    few = density < LEAST_SHARE_AT_ENDS * np.median(density)
-    return np.asarray(np.logical_and.accumulate(few) | np.logical_and.accumulate(few[::-1])[::-1])
-
-
-def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
-    """Sections next to the ends of the face where typical flanks of both sides fall off alike, (n_z,): the end is rounded there."""
-    if flank.shape[2] < 3:
-        return np.zeros(flank.shape[2], dtype=bool)
-    from_low, from_high = at_either_end(np.all(typical_fall(flank) < -least_drop(module, noise), axis=0))
-    return from_low | from_high
 
 
 def _line_at(

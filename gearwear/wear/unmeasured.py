@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +17,8 @@ from gearwear.arrays import Floats
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.robust import scale_about
-from gearwear.wear.flank_arcs import FlankArcs, WornArcs
+from gearwear.wear.by_surfaces import drawn
+from gearwear.wear.flank_arcs import WornArcs
 from gearwear.wear.least import least_of_curves
 from gearwear.wear.regions import Wear
 from gearwear.wear.thickness import SectionThickness
@@ -66,17 +66,10 @@ def unmeasured_teeth(thickness: SectionThickness, wear: Wear, arcs: WornArcs) ->
             continue
         curve[usual] += level
         # Of the surface that is expected: the least of one that is drawn is lower by its luck.
-        drawn = _drawn([arcs.of[tooth, side] for side in Side if (tooth, side) in arcs.of])
+        off_expected = drawn([arcs.of[tooth, side] for side in Side if (tooth, side) in arcs.of])
         at = int(np.argmin(np.where(here, curve, np.inf)))
-        rows.append((tooth, at, float(curve[at]), math.hypot(known, float(drawn[:, at].std()))))
+        rows.append((tooth, at, float(curve[at]), math.hypot(known, float(off_expected[:, at].std()))))
     return _of_rows(rows, thickness) if rows else None
-
-
-def _drawn(flanks: Sequence[FlankArcs]) -> Floats:
-    """What surfaces drawn for the flanks of a tooth are off the expected ones at the radius, (draws, n_z) mm: both have the same random numbers, and
-    turned these are independent."""
-    drawn = [flank.drawn()[0] - flank.expected[0] for flank in flanks]
-    return np.asarray(sum(np.roll(values, (len(values) // 4) * place, axis=0) for place, values in enumerate(drawn)))
 
 
 def _level(off: Floats) -> tuple[Floats, float]:

@@ -12,6 +12,7 @@ from scipy import stats
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.wear.by_surfaces import surface_teeth
 from gearwear.wear.flank_arcs import ACROSS, FlankArcs, _as_they_scatter, worn_arcs
 from gearwear.wear.hollows import _within, find_hollows, pitted
 from gearwear.wear.regions import find_wear
@@ -52,7 +53,8 @@ def measured(points: SurfacePoints, worn: frozenset[Side] = frozenset()) -> tupl
     if arcs is None:
         return alone, alone
     hollows = find_hollows(arcs, pitted(cells), worn, alone.widths, sections, alone.as_made)
-    return alone, replace(alone, hollows=hollows)
+    surfaces = surface_teeth(alone.arc, alone.as_made, arcs, worn, pitted(cells))
+    return alone, replace(alone, hollows=hollows, surfaces=surfaces)
 
 
 @pytest.mark.long
