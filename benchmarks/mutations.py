@@ -268,6 +268,7 @@ MUTATIONS = [
         ("comparison/seam.py", "abs(by) < 0.5 * abs(closure)", "abs(by) < 0.0 * abs(closure)", "comparison/test_seam.py"),
         ("comparison/seam.py", "reach = NORMAL_95 * relative_std", "reach = 0.0 * relative_std", "comparison/test_seam.py"),
         ("wear/thickness.py", "high = min(low, self.seam.low), max(high, self.seam.high)", "high = low, high", "comparison/test_seam.py"),
+        ("report/words/verdict.py", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.4", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.25", "report/test_words.py"),
         ("report/words/verdict.py", "LOPSIDED = 4.0", "LOPSIDED = 2.0", "report/test_words.py"),
         ("placing/refusal.py", "LEAST_FLANK = 100", "LEAST_FLANK = 10", "placing/test_refusal.py placing/test_belonging.py"),
         ("placing/refusal.py", "SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12", "SAME_WIDTH, OTHER_WIDTH = 0.1, 0.12", "placing/test_surroundings.py"),

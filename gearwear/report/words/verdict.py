@@ -40,9 +40,9 @@ RIM_OFF_MODULES, RIM_OFF_MM = {"tip": 0.08, "root": 0.12}, 0.05
 BASE_OFF = 0.01
 """Relative difference of the flanks' base circle from the design's, beyond what makers and scanners leave: neighbours among modules and pressure
 angles in use differ by 1.6 % and more."""
-MODULE_OFF, MODULE_ALIKE = 0.003, 0.25
-"""Relative difference of base and tip circle from the design's, beside a scale that was found, from which on they are of another module; and by what share of it
-both may differ: tips alone, or flanks alone, are off by as much on gears as they are made."""
+MODULE_OFF, MODULE_ALIKE = 0.003, 0.4
+"""Relative difference of base and tip circle from the design's, beside a scale that was found, from which on they are of another module; and by what share of the larger
+both may differ, for wear leans flanks as well: tips alone, or flanks alone, are off by as much on gears as they are made."""
 LEAST_RISE = 0.02
 """Rise over the flank, mm, that goes with it, at least: on small gears a base circle that is off by so little is a profile slope as ground."""
 FAR_OFF, FAR_OFF_MODULES = 0.1, 0.02
@@ -305,10 +305,11 @@ def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0, scale: floa
     module = gear.spec.normal_module
     base, tip = seen.base / gear.base_radius - 1.0 - scale, seen.tip / gear.tip_radius - 1.0 - scale
     far = min(abs(base), abs(tip)) > MODULE_OFF and abs(base) * flank > LEAST_RISE and abs(tip) * gear.tip_radius > RIM_OFF_MM
-    if far and abs(base - tip) < MODULE_ALIKE * abs(base):
-        way = "larger" if base > 0.0 else "smaller"
+    if far and abs(base - tip) < MODULE_ALIKE * max(abs(base), abs(tip)):
+        both = 0.5 * (base + tip)
+        way = "larger" if both > 0.0 else "smaller"
         return (
-            f"flanks and tips are both {100.0 * abs(base):.1f}{SPACE}% {way} than drawn, as those of module {number(module * (1.0 + base), 2)} would be; "
+            f"flanks and tips are both {100.0 * abs(both):.1f}{SPACE}% {way} than drawn, as those of module {number(module * (1.0 + both), 2)} would be; "
             "check the module"
         )
     off = []
