@@ -136,6 +136,7 @@ MUTATIONS = [
         ("diagnose/made_height.py", "else _over_the_face(known, values) for", "else values for", "diagnose/core/test_made_height.py"),
         ("diagnose/effects/edge_rounding.py", "spec.end_edge) > 0.0", "spec.end_edge) > 1e9", "diagnose/test_edge_rounding.py"),
         ("wear/least.py", "HIDDEN = 0.5", "HIDDEN = 1.0", "wear/test_least.py"),
+        ("wear/flank_arcs.py", "sorted((gear.form_roll, gear.tip_roll))", "(gear.form_roll, gear.tip_roll)", "wear/test_by_surfaces.py"),
         ("wear/by_surfaces.py", "WIDER = 1.7", "WIDER = 1.0", "wear/test_hollows.py"),
         ("wear/by_surfaces.py", "- 0.5 * self.luck, std", ", std", "wear/test_by_surfaces.py"),
         ("wear/by_surfaces.py", " & ~throughout", "", "wear/test_by_surfaces.py"),

@@ -124,7 +124,8 @@ def worn_arcs(
     common = {side.index: CommonSurface.of(means, side.index, flank, wide) for side in worn}
     edges = gear.form_roll**2, gear.tip_roll**2
     # The radius itself, and the middles of equal parts of the band.
-    reaches = np.array([band.reach, *(band.reach + band.half * ACROSS)]).clip(gear.form_roll, gear.tip_roll)
+    low, high = sorted((gear.form_roll, gear.tip_roll))  # a ring's run the other way
+    reaches = np.array([band.reach, *(band.reach + band.half * ACROSS)]).clip(low, high)
     columns, rows = grid.flank * (reaches**2 - edges[0]) / (edges[1] - edges[0]), grid.place_of(band.heights)
     found, at = dict[tuple[int, Side], FlankArcs](), at_places(grid.rows, rows)
     for tooth, side in product(teeth.tolist(), Side):

@@ -8,9 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gearwear.design.gear import Gear
 from gearwear.design.side import Side
+from gearwear.design.spec import GearSpec
+from gearwear.design.surface import flank_points
+from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.wear.by_surfaces import WIDER, SurfaceTeeth, surface_teeth
-from gearwear.wear.flank_arcs import FlankArcs, WornArcs
+from gearwear.wear.flank_arcs import FlankArcs, WornArcs, worn_arcs
+from gearwear.wear.regions import find_wear
+from gearwear.wear.section_sums import SectionBand
 from gearwear.wear.thickness import SectionThickness
 
 TEETH, N = 9, 24
@@ -77,6 +83,22 @@ def test_surfaces_go_with_teeth_that_are_thicker():
     by = np.arange(TEETH)[:, None] * 0.01 + np.zeros(N)
     by[1, 3] = np.nan
     assert surfaces.shifted(by).arc == pytest.approx(surfaces.arc + np.array([[0.01], [0.02]]))
+
+
+@pytest.mark.parametrize("internal", [False, True], ids=["spur", "ring"])
+def test_a_surface_is_read_at_the_radius_where_thickness_is_measured(internal):
+    """A ramp along the profile, none at one end of it and 60 µm at the other: what it is there, on a ring too, whose roll falls from form circle to tip."""
+    gear, number, random = Gear.from_spec(GearSpec("", 40, 3.0, 12.0, internal=internal)), 40_000, np.random.default_rng(3)
+    tooth, side = random.integers(gear.teeth, size=number), random.choice([1, -1], number)
+    roll = np.sqrt(random.uniform(*sorted((gear.form_roll**2, gear.tip_roll**2)), number))
+    share = (roll - gear.form_roll) / (gear.tip_roll - gear.form_roll)
+    lost = np.where((tooth == 5) & (side == 1), 0.06 * share, 0.0)
+    height, scatter = random.uniform(0.0, 12.0, number), 0.002 * random.standard_normal(number)
+    points = flank_points(gear, tooth, side, roll, height).with_deviation(scatter - lost)
+    cells, band = bin_points(points, CellGrid.for_scan(gear, number)), SectionBand.of(gear)
+    arcs = worn_arcs(cells, find_wear(cells, 0.002, NONE).mask, NONE, band, 0.002, None)
+    there = (band.reach - gear.form_roll) / (gear.tip_roll - gear.form_roll)
+    assert np.median(arcs.of[5, Side.LEFT].expected[0]) == pytest.approx(-gear.arc_per_depth * 0.06 * there, rel=0.06)
 
 
 def sections(least, std, surface, its, others=6.0):
