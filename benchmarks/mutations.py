@@ -137,6 +137,7 @@ MUTATIONS = [
         ("diagnose/effects/edge_rounding.py", "spec.end_edge) > 0.0", "spec.end_edge) > 1e9", "diagnose/test_edge_rounding.py"),
         ("wear/least.py", "HIDDEN = 0.5", "HIDDEN = 1.0", "wear/test_least.py"),
         ("wear/flank_arcs.py", "sorted((gear.form_roll, gear.tip_roll))", "(gear.form_roll, gear.tip_roll)", "wear/test_by_surfaces.py"),
+        ("comparison/thick.py", "thickness.as_made - _untold(measured.loop, thickness.turn)", "thickness.as_made", "comparison/test_hollow_flank.py"),
         ("wear/by_surfaces.py", "WIDER = 1.7", "WIDER = 1.0", "wear/test_hollows.py"),
         ("wear/by_surfaces.py", "- 0.5 * self.luck, std", ", std", "wear/test_by_surfaces.py"),
         ("wear/by_surfaces.py", " & ~throughout", "", "wear/test_by_surfaces.py"),
