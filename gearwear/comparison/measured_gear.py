@@ -332,13 +332,17 @@ class MeasuredGear(Card):
         return self._part_of(MADE)
 
     @property
+    def raised(self) -> Floats:
+        """By how much flanks that are no datum stand higher as made than the effects have it, cell by cell, (m,) mm (`UntoldFlanks`)."""
+        untold = None if self.loop is None else self.loop.untold
+        return np.zeros(len(self.cells.count)) if untold is None else untold.raised
+
+    @property
     def as_made(self) -> Cells:
         """The cells without measurement, manufacture and unexplained structure: what is left is wear and noise."""
-        unexplained = np.zeros(len(self.cells.count))
+        unexplained = self.raised
         if self.loop is not None:
-            untold = self.loop.untold
-            made = (*(pattern.field for pattern in self.loop.patterns), *([] if untold is None else [untold.raised]))
-            unexplained = np.sum([unexplained, *made], axis=0)
+            unexplained = np.sum([*(pattern.field for pattern in self.loop.patterns), unexplained], axis=0)
         elif not self.root.fits_design:  # what all fillets have is how they were made, as the loop has it
             unexplained = common_fillet(self.cells)
         corrected = self.corrected

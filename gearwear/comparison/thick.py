@@ -64,19 +64,12 @@ def corrected_thickness(measured: MeasuredGear, sections: SectionSums) -> Sectio
         return np.asarray(turn * np.sum([of(flank) for flank in flanks], axis=0).reshape(gear.teeth, -1))
 
     other = [float(arc(partial(loop.as_other, effect)).mean()) for effect in loop.either]
-    untold = _untold(loop, turn)
+    untold = 0.0 if loop.untold is None else turn * loop.untold.level.sum(axis=1, keepdims=True)
     # Between the places that were measured a tooth is as thin as it was made, and no thinner for what the scanner may have done.
     return replace(
         result.against(result.as_made + arc(partial(loop.deviation, kinds=MADE)) + untold).made_with(arc(loop.surely_made) + untold),
         otherwise=(sum(min(change, 0.0) for change in other), sum(max(change, 0.0) for change in other)),
     )  # fmt: skip
-
-
-def _untold(loop: Loop | None, turn: float) -> Floats:
-    """By how much teeth were made thicker than the effects have it, (teeth, 1) mm of arc (`Loop.untold`)."""
-    if loop is None or loop.untold is None:
-        return np.zeros((1, 1))
-    return np.asarray(turn * loop.untold.level.sum(axis=1, keepdims=True), dtype=np.float64)
 
 
 def _with_other_sides(measured: MeasuredGear, thickness: SectionThickness) -> SectionThickness:
@@ -105,19 +98,17 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
     if measured.planar:
         return thickness
     corrected = measured.corrected
-    cells = corrected.with_deviation(corrected.points.deviation - measured.manufacture)
+    cells = corrected.with_deviation(corrected.points.deviation - measured.manufacture - measured.raised)
     arcs = worn_arcs(cells, wear.mask, measured.worn_sides, sections.band, measured.noise, measured.loop)
     if arcs is None:
         return thickness
     pits = pitted(cells)
     hollows = find_hollows(arcs, pits, measured.worn_sides, thickness.widths, sections, thickness.as_made)
-    # What the effects do not tell of how high flanks were made is still in their surfaces.
-    by_effects = thickness.as_made - _untold(measured.loop, thickness.turn)
     return replace(
         thickness,
         hollows=hollows,
-        surfaces=surface_teeth(thickness.arc, by_effects, arcs, measured.worn_sides, pits),
-        unmeasured=unmeasured_teeth(thickness.against(by_effects), wear, arcs),
+        surfaces=surface_teeth(thickness.arc, thickness.as_made, arcs, measured.worn_sides, pits),
+        unmeasured=unmeasured_teeth(thickness, wear, arcs),
         pit_bottom=_pit_bottom(thickness, wear, pits),
     )
 

@@ -55,7 +55,7 @@ class SideCosts:
         no evidence against wear of the side that bends more than the other: they explain whatever it lost better, having any shape. That is held against
         what sides cut alike cost."""
         chosen = self.by_sides[self.chosen]
-        by_forms_apart = self.chosen == NO_SIDE and sides and sides == self.bends
+        by_forms_apart = self.chosen == NO_SIDE and sides == self.bends
         return max(chosen, self.alike) if by_forms_apart and math.isfinite(self.alike) else chosen
 
     @property

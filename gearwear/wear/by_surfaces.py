@@ -6,14 +6,13 @@ that is not so: at the pitch point, where nothing slides, its flanks have a ridg
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
-from gearwear.wear.flank_arcs import FlankArcs, WornArcs
+from gearwear.wear.flank_arcs import WornArcs, drawn
 
 WIDER = 1.7
 """Deviations of its own by which the least of a surface is off (RMS): 1.3 on scans of the families, 2.0 on hollows of 20 µm in noise of 6. The points that a
@@ -74,7 +73,7 @@ def surface_teeth(arc: Floats, as_made: Floats, arcs: WornArcs, worn: frozenset[
     here = arcs.measurable() & np.isfinite(arc)
     rows = list[tuple[int, Floats, Floats, float]]()
     for tooth in np.flatnonzero(arcs.worn.any(axis=1) & ~throughout & ~pits & here.any(axis=1)).tolist():
-        flanks = [arcs.of[tooth, side] for side in Side if (tooth, side) in arcs.of]
+        flanks = arcs.flanks(tooth)
         if len(flanks) < len(Side):
             continue
         curve, off = as_made[tooth] + sum(flank.expected[0] for flank in flanks), drawn(flanks)
@@ -84,10 +83,3 @@ def surface_teeth(arc: Floats, as_made: Floats, arcs: WornArcs, worn: frozenset[
         return None
     teeth, curves, stds, lucks = zip(*rows, strict=True)
     return SurfaceTeeth(np.array(teeth), np.stack(curves), np.stack(stds), np.array(lucks))
-
-
-def drawn(flanks: Sequence[FlankArcs]) -> Floats:
-    """What surfaces drawn for the flanks of a tooth are off the expected ones at the radius, (draws, n_z) mm: both have the same random numbers, and
-    turned these are independent."""
-    off = [flank.drawn()[0] - flank.expected[0] for flank in flanks]
-    return np.asarray(sum(np.roll(values, (len(values) // 4) * place, axis=0) for place, values in enumerate(off)))

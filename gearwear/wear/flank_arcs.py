@@ -7,7 +7,7 @@ within a cell besides, and the mean of its few points hangs on where these happe
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -88,9 +88,20 @@ class WornArcs:
     seen: Bools
     worn: Bools
 
+    def flanks(self, tooth: int) -> list[FlankArcs]:
+        """Those of a tooth that have a surface, left first."""
+        return [self.of[tooth, side] for side in Side if (tooth, side) in self.of]
+
     def measurable(self) -> Bools:
         """(teeth, n_z) sections in which every worn flank of a tooth was seen."""
         return np.asarray((self.seen | ~self.worn[:, :, None]).all(axis=1))
+
+
+def drawn(flanks: Sequence[FlankArcs]) -> Floats:
+    """What surfaces drawn for the flanks of a tooth are off the expected ones at the radius, (draws, n_z) mm: both have the same random numbers, and
+    turned these are independent."""
+    off = [flank.drawn()[0] - flank.expected[0] for flank in flanks]
+    return np.asarray(sum(np.roll(values, (len(values) // 4) * place, axis=0) for place, values in enumerate(off)))
 
 
 def worn_arcs(

@@ -15,10 +15,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.quantity import NORMAL_95
-from gearwear.design.side import Side
 from gearwear.robust import scale_about
-from gearwear.wear.by_surfaces import drawn
-from gearwear.wear.flank_arcs import WornArcs
+from gearwear.wear.flank_arcs import WornArcs, drawn
 from gearwear.wear.least import least_of_curves
 from gearwear.wear.regions import Wear
 from gearwear.wear.thickness import SectionThickness
@@ -52,7 +50,7 @@ def unmeasured_teeth(thickness: SectionThickness, wear: Wear, arcs: WornArcs) ->
     measurable = arcs.measurable()
     off, found = list[Floats](), dict[int, Floats]()
     for tooth in np.flatnonzero(arcs.worn.any(axis=1)).tolist():
-        own = [arcs.of[tooth, side].expected[0] for side in Side if (tooth, side) in arcs.of]
+        own = [flank.expected[0] for flank in arcs.flanks(tooth)]
         if len(own) == 2 and measured[tooth]:
             off.append(arc[tooth] - as_made[tooth] - sum(own))
         elif own and not measured[tooth]:
@@ -66,7 +64,7 @@ def unmeasured_teeth(thickness: SectionThickness, wear: Wear, arcs: WornArcs) ->
             continue
         curve[usual] += level
         # Of the surface that is expected: the least of one that is drawn is lower by its luck.
-        off_expected = drawn([arcs.of[tooth, side] for side in Side if (tooth, side) in arcs.of])
+        off_expected = drawn(arcs.flanks(tooth))
         at = int(np.argmin(np.where(here, curve, np.inf)))
         rows.append((tooth, at, float(curve[at]), math.hypot(known, float(off_expected[:, at].std()))))
     return _of_rows(rows, thickness) if rows else None
