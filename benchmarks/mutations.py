@@ -44,6 +44,11 @@ class Mutation:
 MUTATIONS = [
     Mutation(*row)
     for row in (
+        # thickness by a span or over pins
+        ("design/drawn_gauge.py", "USUAL_THINNING = (-0.02, 0.1)", "USUAL_THINNING = (-0.2, 0.1)", "design/test_drawn_gauge.py"),
+        ("design/drawn_gauge.py", "math.acos(base / centre)) - self.pin", "math.acos(base / centre)) + self.pin", "design/test_drawn_gauge.py"),
+        ("design/drawn_gauge.py", "(low > self.high).any() or ", "", "design/test_drawn_gauge.py"),
+        ("design/drawn_gauge.py", "(2.0 * base * lean)", "(2.0 * base)", "design/test_drawn_gauge.py"),
         # tooth 1 by a mark; grades of radial composite deviations; rounded ends
         ("placing/mark.py", "OTHER_PLACES = 0.25", "OTHER_PLACES = 2.5", "placing/test_mark.py"),
         ("placing/mark.py", "LEAST_POINTS = 8", "LEAST_POINTS = 2", "placing/test_mark.py"),

@@ -14,6 +14,7 @@ from enum import StrEnum
 from numbers import Integral
 
 from gearwear.design.bounds import check_between
+from gearwear.design.drawn_gauge import DrawnGauge
 from gearwear.design.modification import AS_GENERATED, FlankModification
 from gearwear.design.quantity import shown
 from gearwear.design.tolerance import GearTolerance
@@ -103,6 +104,8 @@ class GearSpec:
         q, what grinding takes off a flank along its normal, mm; less than the protuberance. What the rack leaves in the root stays.
     protuberance_angle : float or None
         α_pr of the protuberance's own straight part, rad; None: not stated, the tip is round up to the flank.
+    gauge : DrawnGauge or None
+        Span or dimension over pins by which the drawing states the thickness, and from which `thinning` was worked out; None where it does not.
     ends_seen : ((float, float), (float, float)) or None
         How far a scan shows edges to reach from the low and from the high end, mm, on left and on right flanks; None: as they are drawn.
 
@@ -144,6 +147,7 @@ class GearSpec:
     modified_between: tuple[float, float] | None = None
     thinning_measured: bool = False
     ends_seen: tuple[tuple[float, float], tuple[float, float]] | None = None
+    gauge: DrawnGauge | None = None
 
     def __post_init__(self) -> None:
         try:

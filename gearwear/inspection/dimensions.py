@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.drawn_gauge import DrawnGauge
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.quantity import as_given, at_least, at_most, outside
@@ -115,6 +116,18 @@ class Dimensions:
     chord_thickness: Estimate
     constant_chord: Chord
     constant_chord_thickness: Estimate
+
+    def drawn(self, gear: Gear) -> tuple[DrawnGauge, str] | None:
+        """What the drawing states, and whether its limits are kept; None where it states no limits, or another number of teeth or pin was measured."""
+        gauge = gear.spec.gauge
+        if gauge is None:
+            return None
+        if gauge.pin_diameter is None:
+            alike, measured = self.span is not None and self.span.teeth == gauge.teeth, self.span_lengths
+        else:
+            alike, measured = self.pins is not None and self.pins.diameter == gauge.pin_diameter, self.pin_lengths
+        kept = gauge.kept(measured.value, measured.expanded) if alike else ""
+        return (gauge, kept) if kept else None
 
 
 def span(gear: Gear, teeth: int | None = None) -> Span:

@@ -198,6 +198,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         given = replace(given, noise=asked / gear.base_helix_cosine)
     notes: list[str] = []
     graded = _is_graded(gear, given, notes)
+    drawn = gear.spec.gauge
     gauge, pins = _gauges(gear, given, notes)
     scan = prepare(points, gear, given)
     notes += scan.notes
@@ -214,7 +215,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     notes += _carried_notes(carried, "reference circle", "tooth thickness")
     notes += _carried_notes(carried_pitch, "circle of the pitch", "pitch")
     pitch = pitch_deviations(at_circle, gear, circle, given.sector, edition=given.edition)
-    if pins is not None and given.pin_diameter is None:
+    if pins is not None and given.pin_diameter is None and (drawn is None or drawn.pin_diameter is None):
         at_pins, _ = positions.at(profile_place(gear, pins.roll))
         if seen_flanks(at_pins) < seen_flanks(at_circle):
             pins = pins_touching(gear, circle) or pins
@@ -329,18 +330,19 @@ def _is_graded(gear: Gear, settings: Settings, notes: list[str]) -> bool:
 
 
 def _gauges(gear: Gear, settings: Settings, notes: list[str]) -> tuple[Span | None, Pins | None]:
-    """Span and pins; one that was asked for must fit, one that would have been chosen may be missing."""
-    gauge, pins = None, None
+    """Span and pins, the drawing's where it states them; one that was asked for must fit, one that would have been chosen may be missing."""
+    gauge, pins, drawn = None, None, gear.spec.gauge
     if gear.spec.internal:
         notes.append(RING)
     try:
-        gauge = None if gear.spec.internal and settings.span_teeth is None else span(gear, settings.span_teeth)
+        teeth = settings.span_teeth or (None if drawn is None else drawn.teeth)
+        gauge = None if gear.spec.internal and teeth is None else span(gear, teeth)
     except InputError as error:
         if settings.span_teeth is not None:
             raise
         notes.append(str(error))
     try:
-        pins = over_pins(gear, settings.pin_diameter)
+        pins = over_pins(gear, settings.pin_diameter or (None if drawn is None else drawn.pin_diameter))
     except InputError as error:
         if settings.pin_diameter is not None:
             raise

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
+from gearwear.design.files.toml import parse_design
 from gearwear.design.gear import Gear
 from gearwear.design.modification import FlankModification
 from gearwear.design.side import Side
@@ -18,6 +19,7 @@ from gearwear.errors import InputError
 from gearwear.inspection import Settings, inspect
 from gearwear.inspection.dimensions import chordal, constant_chord, measured_over_pins, measured_span, over_pins, span
 from gearwear.inspection.estimate import Estimate
+from gearwear.report.files.inspection import dimension_lines
 from tests.inspection.synthetic import displaced, flanks
 
 
@@ -234,3 +236,25 @@ def test_plates_touch_crowned_helices_off_mid_face():
     measured = inspect(flanks(gear, 60, 24), gear, Settings(laboratory=False)).dimensions
     assert measured.span_lengths.value == pytest.approx(gauge.length, abs=1e-4)
     assert measured.thickness.value == pytest.approx(plain.tooth_thickness, abs=1e-4)
+
+
+def test_the_gauge_of_the_drawing_is_measured_and_judged():
+    """A gear cut as the design without thinning says: its span lies 0.1 mm off limits that ask for 0.1 to 0.2 mm less, and within those about it."""
+    table = {"teeth": 25, "module": 3.0, "face_width": 15.0}
+    cut = parse_design({"gear": table}).gears["gear"]
+    points = flanks(cut, 80, 12)
+    length = span(cut, 4).length
+    for low, high, kept in ((-0.2, -0.1, "not kept"), (-0.01, 0.01, "kept")):
+        gear = parse_design({"gear": {**table, "span": [length + low, length + high], "span_teeth": 4}}).gears["gear"]
+        found = inspect(locate(points.position, gear, workers=1), gear).dimensions
+        assert found.span.teeth == 4  # 3 without the drawing's
+        assert found.drawn(gear) == (gear.spec.gauge, kept)
+    pin = over_pins(cut, 5.3)
+    gear = parse_design({"gear": {**table, "over_pins": [pin.length - 0.01, pin.length + 0.01], "pin_diameter": 5.3}}).gears[
+        "gear"
+    ]
+    found = inspect(locate(points.position, gear, workers=1), gear)
+    assert found.dimensions.pins.diameter == 5.3
+    assert found.dimensions.drawn(gear)[1] == "kept"
+    assert inspect(locate(points.position, gear, workers=1), gear, Settings(span_teeth=4)).dimensions.drawn(gear) is not None
+    assert f"limits of the pins {pin.length - 0.01:.3f} … {pin.length + 0.01:.3f} mm: kept" in dimension_lines(found)

@@ -23,6 +23,7 @@ ALIASES = {
     "outside_diameter": "tip_diameter", "df": "root_diameter", "bore": "bore_diameter", "ha*": "addendum", "hf*": "dedendum",
     "z0": "cutter_teeth", "p_d": "diametral_pitch", "pd": "diametral_pitch", "pnd": "diametral_pitch", "normal_diametral_pitch": "diametral_pitch", "od": "tip_diameter",
     "outer_diameter": "tip_diameter", "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "pr": "protuberance", "q": "grinding_stock", "a": "centre_distance", "center_distance": "centre_distance",
+    "wk": "span", "w_k": "span", "k": "span_teeth", "base_tangent_length": "span", "mdk": "over_pins", "mdr": "over_pins", "dm": "pin_diameter",
 }  # fmt: skip
 """What drawings call the keys of a design file."""
 MM = {
@@ -43,10 +44,10 @@ MODULES = ("modules", "module", "× module", "x module", "*m", *PLAIN)
 LENGTHS = (
     "module", "face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "tip_diameter", "root_diameter", "centre_distance",
     "backlash_allowance", "normal_module", "transverse_module", "rim_diameter", "fillet_radius", "protuberance",
-    "grinding_stock", "tip_rounding", "end_rounding", "gap", *(key for key in MODIFICATION_KEYS if key not in WORDS),
+    "grinding_stock", "tip_rounding", "end_rounding", "gap", "span", "over_pins", "pin_diameter", *(key for key in MODIFICATION_KEYS if key not in WORDS),
 )  # fmt: skip
 ANGLES = ("pressure_angle", "helix_angle", "protuberance_angle")
-COUNTS = ("teeth", "cutter_teeth")
+COUNTS = ("teeth", "cutter_teeth", "span_teeth")
 PARTS = ("pinion", "gear", "pair")
 _REMARK = re.compile(r'\s*"?\s*#')
 """How a line that is skipped begins; a spreadsheet puts quotes round one with a separator in it."""

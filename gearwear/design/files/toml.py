@@ -13,6 +13,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from gearwear.design.drawn_gauge import DrawnGauge, shift_instead
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.sections import (
     parse_datum,
@@ -49,6 +50,8 @@ from gearwear.errors import InputError, check_kind, readable
 
 MODULES = ("module", "normal_module", "transverse_module", "diametral_pitch")
 SHARED = (*MODULES, "pressure_angle", "face_width", "gap")
+GAUGES = {"span": "span_teeth", "over_pins": "pin_diameter"}
+"""By which a drawing states the thickness of teeth, each with what it is taken over."""
 LENGTHS = (
     "face_width",
     "thinning",
@@ -74,6 +77,8 @@ GEAR_KEYS = (
     *LENGTHS,
     *RATIOS,
     "thinning_from",
+    *GAUGES,
+    *GAUGES.values(),
     "internal",
     "cutter_teeth",
     *MODIFICATION_KEYS,
@@ -235,7 +240,7 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     tables = {part: _with_shared(data[part], other, data[other]) for part, other in zip(parts, parts[::-1], strict=True)}
     gears = {part: Gear.from_spec(_gear_spec(part, tables[part])) for part in parts}
     limits.check(min(gear.pitch_angle * gear.reference_radius for gear in gears.values()))
-    notes = tuple(note for gear in gears.values() for note in gear.notes)
+    notes = tuple(note for gear in gears.values() for note in (shift_instead(gear.spec), *gear.notes) if note)
     if len(parts) == 1:
         for section in ("pair", "load"):
             if section in data:
@@ -298,7 +303,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         values["dedendum"] = _rim(
             part, table, "root_diameter", module, lambda radius: orientation * reference + shift - orientation * radius, DEDENDUM
         )
-    return GearSpec(
+    spec = GearSpec(
         name=part,
         teeth=teeth,
         normal_module=module,
@@ -315,8 +320,52 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         modified_between=None,
         ends_seen=None,
         thinning_measured=_measured_thinning(part, table),
+        gauge=_gauge(part, table),
         **values,
     )
+    if spec.gauge is None:
+        return spec
+    thinning, half = spec.gauge.thinning(spec)
+    if half > 0.0 and spec.tolerance.thickness is None:
+        spec = replace(spec, tolerance=replace(spec.tolerance, thickness=half))
+    return replace(spec, thinning=thinning)
+
+
+def _gauge(part: str, table: dict[str, Any]) -> DrawnGauge | None:
+    """Span or dimension over pins, one value or its two limits, in place of the thinning."""
+    for (key, over), other in zip(GAUGES.items(), reversed(GAUGES), strict=True):
+        if key not in table:
+            if over in table:
+                raise InputError(f"[{part}] {over} without {key}: mm, a value or its two limits [low, high]")
+            continue
+        exclusive(part, table, key, other)
+        exclusive(part, table, key, "thinning")
+        if over not in table:
+            what = "the teeth it is taken over" if key == "span" else "mm"
+            raise InputError(f"[{part}] {key} without {over}: {what}")
+        given = table[key] if isinstance(table[key], list) else [table[key]]
+        if len(given) not in (1, 2):
+            raise InputError(f"[{part}] {key} = {shown(given)}: a value or its two limits [low, high] would be right")
+        low, *high = sorted(finite_number(part, {key: value}, key) for value in given)
+        if low <= 0.0:
+            raise InputError(f"[{part}] {key} = {as_given(low)} mm: must be above 0")
+        return DrawnGauge(low=low, high=high[0] if high else low, **_over(part, table, over))
+    return None
+
+
+def _over(part: str, table: dict[str, Any], key: str) -> dict[str, Any]:
+    """Over how many teeth or which pins a gauge is taken."""
+    if key == "span_teeth":
+        teeth = table[key]
+        if isinstance(teeth, bool) or not isinstance(teeth, int) or teeth < 1:
+            raise InputError(f"[{part}] {key} = {shown(teeth)}: must be a whole number above 0")
+        if table.get("internal"):
+            raise InputError(f"[{part}] span: no plates reach into a ring; over_pins, between pins, would be right")
+        return {"teeth": teeth}
+    diameter = finite_number(part, table, key)
+    if diameter <= 0.0:
+        raise InputError(f"[{part}] {key} = {as_given(diameter)} mm: must be above 0")
+    return {"pin_diameter": diameter}
 
 
 def _measured_thinning(part: str, table: dict[str, Any]) -> bool:

@@ -352,4 +352,9 @@ def dimension_lines(inspection: Inspection) -> list[str]:
             said.append(f"{name:<19} {least:.3f} … {most:.3f} mm, U {expanded:.{decimals}f}; design {nominal:.3f}")
         else:
             said.append(f"{name:<20}not seen; design {nominal:.3f} mm")
+    drawn = dimensions.drawn(gear)
+    if drawn is not None:
+        limits, kept = drawn
+        what = "span" if limits.pin_diameter is None else "pins"
+        said.append(f"limits of the {what} {limits.low:.3f} … {limits.high:.3f} mm: {kept}")
     return said

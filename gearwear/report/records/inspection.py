@@ -217,6 +217,10 @@ def _dimensions(inspection: Inspection) -> Json:
                 for i in range(len(dimensions.pin_lengths.value))
             ],
         }
+    drawn = dimensions.drawn(gear)
+    if drawn is not None:
+        gauge, kept = drawn
+        record["span" if gauge.pin_diameter is None else "over_pins"] |= {"limits_mm": [gauge.low, gauge.high], "limits": kept}
     return record
 
 
