@@ -34,7 +34,7 @@ from gearwear.report.words.effects import fitted_words, found_words
 from gearwear.report.words.loaded import HEAD as HEAD_LOADED
 from gearwear.report.words.loaded import TEXT as TEXT_LOADED
 from gearwear.report.words.loaded import load_words, loaded_notes, loaded_rows
-from gearwear.report.words.lost import lost_words, open_words
+from gearwear.report.words.lost import lost_from, open_words
 from gearwear.report.words.numbers import effect_title, row, thickness_place, which_flanks
 from gearwear.report.words.running import CAPTION as CAPTION_RUNNING
 from gearwear.report.words.running import HEAD as HEAD_RUNNING
@@ -76,7 +76,7 @@ def _wear_words(results: Results) -> str:
     text = ["no region of wear stands out of the scatter of this scan"]
     if worn.regions:
         which = which_flanks(worn.regions, worn)
-        text = [f"in all {lost_words(results)} from {which}", *filter(None, [open_words(results)])]
+        text = [f"in all {lost_from(results, which)}", *filter(None, [open_words(results)])]
         if results.effects:
             without = with_std(before.volume, before.volume_std, unit)
             text.append(f"without taking the effects of scan and manufacture out first it would have been {without}")

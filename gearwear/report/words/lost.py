@@ -36,6 +36,13 @@ def lost_words(results: Results) -> str:
     return f"{size_words(results)} {'of the section' if results.planar else 'of metal'}"
 
 
+def lost_from(results: Results, which: str) -> str:
+    """How much is gone from which flanks; where the rest of it may lie on others, that these are what stands out."""
+    if _beyond(results):
+        return f"{lost_words(results)} is gone; what stands out {'are' if len(results.wear.regions) > 1 else 'is'} {which}"
+    return f"{lost_words(results)} is gone from {which}"
+
+
 def size_words(results: Results) -> str:
     """The volume with its standard deviation; between what it lies, where that is much more than its own 95 %."""
     return _limits(results) if _wide(results) else _with_own_std(results)
@@ -74,14 +81,16 @@ def where_lost(results: Results) -> str:
     if not regions:
         beside = f"not excluded{why}" if open_ else ""
         return "; ".join(filter(None, (beside, "no region stands out", _too_faint(results))))
+    where = which_flanks(regions, results.wear.found, "seen")  # room is short beside a number
     beside = _too_faint(results)
-    if open_:
+    if _beyond(results):
+        where, beside = f"{_with_own_std(results)} of it from {where}", why.removeprefix("; ")
+    elif open_:
         beside = f"{_limits(results)} are not excluded{why}"
         if _wide(results):
             beside = f"{_told_as(results)[1]} {_with_own_std(results)}{why}"
     worn_thin = f"up to {up_to} if worn evenly to the measured thinning" if (up_to := _up_to(results)) else ""
-    where = which_flanks(regions, results.wear.found, "seen")  # room is short beside a number
-    return "; ".join(filter(None, (f"from {where}", beside, worn_thin)))
+    return "; ".join(filter(None, (where if _beyond(results) else f"from {where}", beside, worn_thin)))
 
 
 def may_be_none(results: Results) -> bool:
@@ -151,6 +160,14 @@ def _range(results: Results) -> tuple[float, float, str] | None:
 
 def _with_own_std(results: Results) -> str:
     return with_std(results.wear.volume, results.wear.volume_std, UNIT[results.planar])
+
+
+def _beyond(results: Results) -> bool:
+    """Whether the volume's range is told in its place, and what is open of it may lie on other flanks than those that stand out."""
+    widest, throughout = results.open_volume.widest, bool(results.measured.worn_sides)
+    return _wide(results) and (
+        widest in (Open.THIN, Open.UNSURE, Open.PITS) or (widest in (Open.SIDES, Open.FORM) and not throughout)
+    )
 
 
 def _wide(results: Results) -> bool:

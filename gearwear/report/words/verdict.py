@@ -26,7 +26,16 @@ from gearwear.diagnose.found import Loop
 from gearwear.placing.refusal import SeenRadii
 from gearwear.report.words.contact import reaches_beyond, why_open
 from gearwear.report.words.effects import found_words
-from gearwear.report.words.lost import is_open, lost_words, may_be_none, open_words, size_words, where_lost, worn_so_thin
+from gearwear.report.words.lost import (
+    is_open,
+    lost_from,
+    lost_words,
+    may_be_none,
+    open_words,
+    size_words,
+    where_lost,
+    worn_so_thin,
+)
 from gearwear.report.words.numbers import between, effect_title, thickness_place, which_flanks
 from gearwear.scan.types import Scan
 from gearwear.wear.breakage import MISSING_TOOTH
@@ -104,7 +113,7 @@ def _wear_found(results: Results) -> str:
     assert worst is not None
     place, depth = which_flanks([worst]), deepest_range(results, worst) or _depth(worst.max_depth)
     where = which_flanks(wear.regions, wear.found)
-    text = f"{lost_words(results)} is gone from {where}"
+    text = lost_from(results, where)
     if may_be_none(results):
         text = f"{where} may be worn: {lost_words(results)} is missing there, which may be none"
     if len(wear.regions) == 1:
