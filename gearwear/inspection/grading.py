@@ -19,6 +19,8 @@ class Verdict(StrEnum):
     GRADED = "graded"
     WITHIN = "within tolerance"
     EXCEEDS = "exceeds tolerance"
+    NEITHER = "neither proven"
+    """Of a required class: the tolerance lies within U of the value."""
     COARSER = "coarser than every class"
     NOT_RESOLVABLE = "not resolvable"
     NOT_SEEN = "not seen"
@@ -130,7 +132,8 @@ def grade(
     Notes
     -----
     Where U is over 30 % of the tolerance the verdict is "not resolvable", unless the value exceeds the tolerance by more than U: that is
-    proven all the same (ISO 14253-1).
+    proven all the same. A required class is decided by ISO 14253-1: kept where value and U together do not exceed the tolerance, not kept where the value
+    exceeds it by more than U, and in between neither is proven. The class that is found is that of the value alone.
 
     Examples
     --------
@@ -165,7 +168,14 @@ def graded(
     if not resolved and not abs(value) - expanded > limit:
         verdict = Verdict.NOT_RESOLVABLE
     elif required is not None:
-        verdict = Verdict.EXCEEDS if over else Verdict.WITHIN
+        verdict = _decided(abs(value), expanded, limit)
     else:
         verdict = Verdict.COARSER if over else Verdict.GRADED
     return Grade(iso_class_found, resolvable[0] if resolvable else None, met, limit, verdict)
+
+
+def _decided(size: float, expanded: float, limit: float) -> Verdict:
+    """Whether a deviation (mm, without its sign) keeps the tolerance of a required class."""
+    if size + expanded <= limit + 1e-12:
+        return Verdict.WITHIN
+    return Verdict.EXCEEDS if size - expanded > limit else Verdict.NEITHER

@@ -135,7 +135,9 @@ class Inspection(Card):
     def iso_class(self) -> int | None:
         """Class of the gear: the coarsest of all findings; None unless every one of them was graded."""
         graded = [f.grade.iso_class for f in self.findings if f.grade.verdict is not Verdict.NO_TOLERANCE]
-        sound = all(f.grade.verdict in (Verdict.GRADED, Verdict.WITHIN, Verdict.NO_TOLERANCE) for f in self.findings)
+        sound = all(
+            f.grade.verdict in (Verdict.GRADED, Verdict.WITHIN, Verdict.NEITHER, Verdict.NO_TOLERANCE) for f in self.findings
+        )
         return max((c for c in graded if c is not None), default=None) if sound else None
 
 

@@ -89,8 +89,10 @@ def test_verdicts(pinion):
     size = Size.of(pinion)
     limit = tolerances(size, 8).profile_slope  # 19 µm
     cases = [
-        (0.9 * limit, 0.29 * limit, Verdict.WITHIN),
-        (1.1 * limit, 0.29 * limit, Verdict.EXCEEDS),
+        (0.9 * limit, 0.09 * limit, Verdict.WITHIN),
+        (0.9 * limit, 0.11 * limit, Verdict.NEITHER),  # ISO 14253-1
+        (-1.1 * limit, 0.11 * limit, Verdict.NEITHER),
+        (1.1 * limit, 0.09 * limit, Verdict.EXCEEDS),
         (0.9 * limit, 0.31 * limit, Verdict.NOT_RESOLVABLE),
         (1.1 * limit, 0.31 * limit, Verdict.NOT_RESOLVABLE),
         (-1.5 * limit, 0.45 * limit, Verdict.EXCEEDS),  # beyond doubt all the same

@@ -29,7 +29,8 @@ def test_expanded_uncertainty_is_twice_the_standard_one_and_the_bias():
     [
         (0.5, 0.29, Verdict.WITHIN), (0.5, 0.31, Verdict.NOT_RESOLVABLE),
         # over the tolerance by more than U is proven all the same; by less it is not
-        (1.4, 0.31, Verdict.EXCEEDS), (1.2, 0.31, Verdict.NOT_RESOLVABLE), (1.2, 0.29, Verdict.EXCEEDS),
+        (1.4, 0.31, Verdict.EXCEEDS), (1.2, 0.31, Verdict.NOT_RESOLVABLE), (1.2, 0.19, Verdict.EXCEEDS),
+        (1.2, 0.29, Verdict.NEITHER),
     ],
 )  # fmt: skip
 def test_a_tolerance_is_resolved_by_a_third_less_a_tenth_of_it(value, expanded, verdict):

@@ -227,10 +227,18 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     whole = inspection.iso_class
     if whole is not None and settings.required_class is None:
         said.append((f"class of the gear: {whole}", "bold"))
-    if any(finding.grade.verdict is Verdict.NOT_RESOLVABLE for finding in inspection.findings):
-        share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
-        said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
+    said += [(text, "dim") for text in _legend({finding.grade.verdict for finding in inspection.findings})]
     return said + [(text, "yellow") for text in _warned(doubts, 2 if inspection.settings.k_bands is None else 1)]
+
+
+def _legend(found: set[Verdict]) -> list[str]:
+    """What the short verdicts mean, on one line."""
+    if Verdict.NOT_RESOLVABLE not in found:
+        return []
+    share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
+    if Verdict.NEITHER in found:
+        return [f"n.r.: U over {share} of the tolerance; ≤: class met; unproven: it lies within U"]
+    return [f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain"]
 
 
 def _warned(doubts: Sequence[str], room: int) -> list[str]:
@@ -322,7 +330,7 @@ def _class(finding: Finding) -> str:
         return "too few"
     short = {
         Verdict.GRADED: str(mark.iso_class), Verdict.WITHIN: "within", Verdict.EXCEEDS: "exceeds", Verdict.COARSER: "coarser",
-        Verdict.NOT_SEEN: "not seen", Verdict.NO_TOLERANCE: MISSING,
+        Verdict.NEITHER: "unproven", Verdict.NOT_SEEN: "not seen", Verdict.NO_TOLERANCE: MISSING,
     }  # fmt: skip
     return short[mark.verdict]
 

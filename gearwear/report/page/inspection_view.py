@@ -56,7 +56,7 @@ def inspection_view(
     graded = KeyFigure(
         "Class of the gear", none if inspection.iso_class is None else str(inspection.iso_class), str(inspection.settings.edition)
     )
-    required = [] if asked is None else [KeyFigure("Class required", str(asked), str(inspection.settings.edition))]
+    required = [] if asked is None else [KeyFigure("Class required", str(asked), _decided(found))]
     return PageView(
         title="Gear inspection report",
         subject=subject,
@@ -85,3 +85,11 @@ def inspection_view(
         ],
         footer="",
     )
+
+
+def _decided(found: set[Verdict]) -> str:
+    """Whether all deviations keep the required class, in words."""
+    if Verdict.EXCEEDS in found:
+        return "not kept (ISO 14253-1)"
+    open_ = {Verdict.NEITHER, Verdict.NOT_RESOLVABLE, Verdict.NOT_SEEN} & found
+    return "neither proven (ISO 14253-1)" if open_ else "kept (ISO 14253-1)"
