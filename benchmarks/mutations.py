@@ -44,6 +44,11 @@ class Mutation:
 MUTATIONS = [
     Mutation(*row)
     for row in (
+        # values that the drawing should have
+        ("report/words/other_design.py", "SHIFT_ALIKE = 0.05", "SHIFT_ALIKE = 0.5", "report/test_words.py"),
+        ("report/words/other_design.py", "COARSEST = 11", "COARSEST = 9", "report/test_words.py"),
+        ("report/words/other_design.py", "gear.orientation * 0.5 * sum(out)", "0.25 * sum(out)", "report/test_words.py"),
+        ("report/words/other_design.py", "and abs(tip) < 0.5 * abs(base) ", "", "report/test_words.py"),
         # thickness by a span or over pins
         ("design/drawn_gauge.py", "USUAL_THINNING = (-0.02, 0.1)", "USUAL_THINNING = (-0.2, 0.1)", "design/test_drawn_gauge.py"),
         ("design/drawn_gauge.py", "math.acos(base / centre)) - self.pin", "math.acos(base / centre)) + self.pin", "design/test_drawn_gauge.py"),
@@ -275,7 +280,7 @@ MUTATIONS = [
         ("comparison/seam.py", "abs(by) < 0.5 * abs(closure)", "abs(by) < 0.0 * abs(closure)", "comparison/test_seam.py"),
         ("comparison/seam.py", "reach = NORMAL_95 * relative_std", "reach = 0.0 * relative_std", "comparison/test_seam.py"),
         ("wear/thickness.py", "high = min(low, self.seam.low), max(high, self.seam.high)", "high = low, high", "comparison/test_seam.py"),
-        ("report/words/verdict.py", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.4", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.25", "report/test_words.py"),
+        ("report/words/other_design.py", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.4", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.25", "report/test_words.py"),
         ("report/words/verdict.py", "LOPSIDED = 4.0", "LOPSIDED = 2.0", "report/test_words.py"),
         ("placing/refusal.py", "LEAST_FLANK = 100", "LEAST_FLANK = 10", "placing/test_refusal.py placing/test_belonging.py"),
         ("placing/refusal.py", "SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12", "SAME_WIDTH, OTHER_WIDTH = 0.1, 0.12", "placing/test_surroundings.py"),

@@ -158,7 +158,8 @@ def _run(arguments: Namespace) -> None:
         from gearwear.comparison.closing import measure
         from gearwear.placing.refusal import seen_radii
         from gearwear.report.files.inspection import dimension_lines, inspection_record, lines, worst_tooth, write_inspection
-        from gearwear.report.words.verdict import subject, wrong_design
+        from gearwear.report.words.other_design import other_angles, wrong_design
+        from gearwear.report.words.verdict import subject
 
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
         gear = measured.gear
@@ -167,10 +168,12 @@ def _run(arguments: Namespace) -> None:
         half = _half(arguments, gear)
         inspection, about_teeth = _inspected(arguments, measured, half, edition)
         tell("charts")
-        doubt = wrong_design(gear, seen_radii(measured.placed, gear), scale=measured.scale)
+        seen, effects = seen_radii(measured.placed, gear), () if measured.loop is None else measured.loop.effects
+        doubt = wrong_design(gear, seen, scale=measured.scale, drawn=design.gears[measured.part])
+        angles = other_angles(gear, seen, effects, measured.scale)
         which = f"the {half} half of a double helical gear" if half is not None else ""
         left = (_taken_out(measured.loop), _unexplained(measured.loop, gear))
-        notes = [*filter(None, [which, doubt, *left]), *measured.notes]
+        notes = [*filter(None, [which, doubt, *angles, *left]), *measured.notes]
         registration, command = measured.placed.registration, arguments.command
         record = inspection_record(
             design, measured.part, measured.scans, registration, measured.loop, notes, command, about_teeth

@@ -25,6 +25,7 @@ from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
 from gearwear.report.words.numbers import effect_title, quantity, which_flanks
+from gearwear.report.words.other_design import other_angles, wrong_design
 from gearwear.report.words.verdict import (
     alike_words,
     deepest_range,
@@ -33,7 +34,6 @@ from gearwear.report.words.verdict import (
     loop_words,
     thinnest_words,
     verdict,
-    wrong_design,
 )
 from gearwear.wear.limits import FlankLimit
 from gearwear.wear.tooth_summary import ThinnestTooth
@@ -240,6 +240,56 @@ def test_worn_flanks_lean_and_are_of_another_module_all_the_same(base, tip, modu
     gear = fake_results().gear
     said = wrong_design(gear, SeenRadii(base * gear.base_radius, tip * gear.tip_radius, gear.root_radius))
     assert module in said if module else said is None or "module" not in said
+
+
+class TestWhatTheDrawingShouldSay:
+    """Circles of gears that differ from the design's in one value; what is told is that value."""
+
+    GEAR = fake_results().gear
+
+    def other(self, **changes):
+        return Gear.from_spec(replace(self.GEAR.spec, **changes))
+
+    def seen(self, gear):
+        return SeenRadii(gear.base_radius, gear.tip_radius, gear.root_radius)
+
+    @pytest.mark.parametrize("shift", [-0.2, 0.35])
+    def test_profile_shift(self, shift):
+        seen = self.seen(self.other(profile_shift=shift))
+        assert f"of a profile shift of {number(shift, 2)} would" in wrong_design(self.GEAR, seen)
+        # the root that was seen is in the gear, and not on the drawing
+        fitted = self.other(dedendum=self.GEAR.spec.dedendum - shift)
+        assert f"of a profile shift of {number(shift, 2)} would" in wrong_design(fitted, seen, drawn=self.GEAR)
+
+    def test_another_tip_alone_is_no_shift(self):
+        for other in (
+            {"addendum": 1.3},
+            {"addendum": 1.3, "dedendum": self.GEAR.spec.dedendum - 0.2},
+        ):  # nor one further out than the root
+            assert "shift" not in wrong_design(self.GEAR, self.seen(self.other(**other)))
+
+    @pytest.mark.parametrize("degrees", [19.5, 20.5])
+    def test_pressure_angle(self, degrees):
+        gear = self.other(normal_pressure_angle=math.radians(degrees))
+        (said,) = other_angles(self.GEAR, self.seen(gear), ())
+        assert f"a pressure angle of {degrees:.2f}° and not of 20.00°" in said
+        assert other_angles(self.GEAR, self.seen(self.other(normal_pressure_angle=math.radians(0.1 + 19.8))), ()) == []
+
+    def test_flanks_and_tips_alike_are_of_no_other_angle(self):
+        both = SeenRadii(0.996 * self.GEAR.base_radius, 0.996 * self.GEAR.tip_radius, self.GEAR.root_radius)
+        assert other_angles(self.GEAR, both, ()) == []
+
+    @pytest.mark.parametrize("degrees", [18.5, 19.0])
+    def test_helix_angle(self, degrees):
+        """Two flanks through the same point at mid-face, one of each angle: what lies between them at the ends, along the normal in space."""
+        drawn = self.other(helix_angle=math.radians(18.0), face_width=40.0)
+        turn = 40.0 * (math.tan(math.radians(degrees)) / drawn.reference_radius - drawn.twist)
+        slope = turn * drawn.base_radius * drawn.base_helix_cosine
+        effect = SimpleNamespace(name="helix_slope", amplitudes=np.array([slope]))
+        (said,) = other_angles(drawn, self.seen(drawn), (effect,))
+        assert f"lean by {degrees:.2f}° and not by 18.00°" in said
+        small = SimpleNamespace(name="helix_slope", amplitudes=np.array([0.03]))
+        assert other_angles(drawn, self.seen(drawn), (small,)) == []
 
 
 def test_flanks_seen_too_thinly_beside_wear_are_told_once():

@@ -23,7 +23,6 @@ from gearwear.design.quantity import (
 )
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
-from gearwear.placing.refusal import SeenRadii
 from gearwear.report.words.contact import reaches_beyond, why_open
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.lost import (
@@ -37,6 +36,7 @@ from gearwear.report.words.lost import (
     worn_so_thin,
 )
 from gearwear.report.words.numbers import between, effect_title, thickness_place, which_flanks
+from gearwear.report.words.other_design import other_angles, wrong_design
 from gearwear.scan.types import Scan
 from gearwear.wear.breakage import MISSING_TOOTH
 from gearwear.wear.regions import WearRegion
@@ -44,18 +44,6 @@ from gearwear.wear.tooth_summary import ThinnestTooth
 
 LITTLE_SEEN, NOT_SEEN = 0.5, 0.05
 """Share of the flanks below which a result is doubtful; share of one side's below which that side was not seen."""
-RIM_OFF_MODULES, RIM_OFF_MM = {"tip": 0.08, "root": 0.12}, 0.05
-"""Distance of tips and roots from the design's, in modules and mm together, at which the design's tip or root diameter is not the gear's."""
-BASE_OFF = 0.01
-"""Relative difference of the flanks' base circle from the design's, beyond what makers and scanners leave: neighbours among modules and pressure
-angles in use differ by 1.6 % and more."""
-MODULE_OFF, MODULE_ALIKE = 0.003, 0.4
-"""Relative difference of base and tip circle from the design's, beside a scale that was found, from which on they are of another module; and by what share of the larger
-both may differ, for wear leans flanks as well: tips alone, or flanks alone, are off by as much on gears as they are made."""
-LEAST_RISE = 0.02
-"""Rise over the flank, mm, that goes with it, at least: on small gears a base circle that is off by so little is a profile slope as ground."""
-FAR_OFF, FAR_OFF_MODULES = 0.1, 0.02
-"""RMS outside the wear, mm and modules, all that was found taken out, above both of which a scan is more likely of another gear."""
 ABOVE_NOISE = 2.0
 """RMS of what is left, over the scan's own noise, above which that is not "nothing", pattern or not."""
 LEAST_STD = 1e-4
@@ -225,7 +213,7 @@ def pattern_words(loop: Loop, gear: Gear) -> str:
 
 def doubts(results: Results) -> list[str]:
     """Everything a reader must know before trusting the numbers, as sentences; [] where all is well."""
-    said = [f"doubtful: {text}" for text in grave_doubts(results)]
+    said = doubts_of_design(results)
     value, std = results.wear.volume, results.wear.volume_std
     if results.wear.regions and value > 0.0 and std > 0.3 * value:
         said.append(f"what is lost is known to ±{SPACE}{significant(100.0 * std / value, 2)}{SPACE}% only")
@@ -237,6 +225,12 @@ def doubts(results: Results) -> list[str]:
     said += weighed_words(results.weighed)
     harmless = set(results.design.warnings)  # about the drawing, not about this result
     return [sentence(text) for text in dict.fromkeys(said) if text not in harmless]
+
+
+def doubts_of_design(results: Results) -> list[str]:
+    """What puts the whole result in question, and angles that are not the drawing's, a clause each."""
+    angles = other_angles(results.gear, results.seen, results.effects, results.measured.scale)
+    return [*(f"doubtful: {text}" for text in grave_doubts(results)), *angles]
 
 
 def silent_words(results: Results) -> list[str]:
@@ -288,53 +282,8 @@ def grave_doubts(results: Results) -> list[str]:
 
 
 def _wrong_design(results: Results) -> str | None:
-    return wrong_design(results.gear, results.seen, results.rms_left, results.measured.scale)
-
-
-def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0, scale: float = 0.0) -> str | None:
-    """Why a scan is more likely of another gear than the design's; None where nothing says so.
-
-    Parameters
-    ----------
-    gear : Gear
-        As designed.
-    seen : SeenRadii
-        What the scan shows of its size.
-    rms_left : float
-        RMS outside the wear with all that was found taken out, mm.
-    scale : float
-        By what ratio the scan was found to be too large.
-    """
-    other, flank = abs(seen.base / gear.base_radius - 1.0), abs(gear.tip_roll - gear.form_roll)
-    if other > BASE_OFF and other * flank > LEAST_RISE:
-        text = (
-            f"the flanks are those of another gear or out of scale: their base circle is some {_diameter(seen.base)} in diameter"
-        )
-        return f"{text} and the design's {_diameter(gear.base_radius)}; check module and pressure angle"
-    module = gear.spec.normal_module
-    base, tip = seen.base / gear.base_radius - 1.0 - scale, seen.tip / gear.tip_radius - 1.0 - scale
-    far = min(abs(base), abs(tip)) > MODULE_OFF and abs(base) * flank > LEAST_RISE and abs(tip) * gear.tip_radius > RIM_OFF_MM
-    if far and abs(base - tip) < MODULE_ALIKE * max(abs(base), abs(tip)):
-        both = 0.5 * (base + tip)
-        way = "larger" if both > 0.0 else "smaller"
-        return (
-            f"flanks and tips are both {100.0 * abs(both):.1f}{SPACE}% {way} than drawn, as those of module {number(module * (1.0 + both), 2)} would be; "
-            "check the module"
-        )
-    off = []
-    for rim, radius, drawn in (("tip", seen.tip, gear.tip_radius), ("root", seen.root, gear.root_radius)):
-        if abs(radius - drawn) > RIM_OFF_MODULES[rim] * module + RIM_OFF_MM:
-            off.append(f"{rim}s lie at a diameter of {_diameter(radius)} and the design's at {_diameter(drawn)}")
-    if off:
-        return f"the {listed(off)}; check tip and root diameter"
-    if rms_left > max(FAR_OFF, FAR_OFF_MODULES * module):
-        text = f"outside the wear the scan is {_um(rms_left)}{SPACE}µm off the design (RMS)"
-        return f"{text}, as that of another gear would be"
-    return None
-
-
-def _diameter(radius: float) -> str:
-    return f"{significant(2.0 * radius)}{SPACE}mm"
+    drawn = results.design.gears[results.part]
+    return wrong_design(results.gear, results.seen, results.rms_left, results.measured.scale, drawn)
 
 
 def _um(value: float) -> str:
