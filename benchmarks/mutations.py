@@ -44,6 +44,9 @@ class Mutation:
 MUTATIONS = [
     Mutation(*row)
     for row in (
+        # cells of a few teeth
+        ("placing/cells.py", "LEAST_OF_TOOTH = 0.02", "LEAST_OF_TOOTH = 0.2", "placing/test_grid.py"),
+        ("placing/cells.py", "round(points * gear.teeth / seen)", "points", "placing/test_grid.py"),
         # values that the drawing should have
         ("report/words/other_design.py", "SHIFT_ALIKE = 0.05", "SHIFT_ALIKE = 0.5", "report/test_words.py"),
         ("report/words/other_design.py", "COARSEST = 11", "COARSEST = 9", "report/test_words.py"),

@@ -441,7 +441,7 @@ def _in_cells(
     chunks = scans[0].chunks
     if chunks is not None:
         on = round(on * len(chunks) / len(placed.located))
-    grid = grid or CellGrid.for_scan(gear, on, planar=planar)
+    grid = grid or CellGrid.for_located(placed.located, gear, on, planar)
     points = placed.measured
     fractures = find_fractures(points, gear, planar)
     border = with_borders(points, fractures, gear, placed.registration.noise)

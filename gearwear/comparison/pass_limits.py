@@ -50,5 +50,5 @@ class PassLimits:
 
 def grid_of_sample(located: SurfacePoints, grid: CellGrid) -> CellGrid:
     """The grid for a located sample: that of the whole scan where its cells hold points enough, else a coarser one."""
-    coarser = CellGrid.for_scan(grid.gear, int((located.surface != OTHER).sum()))
+    coarser = CellGrid.for_located(located, grid.gear, int((located.surface != OTHER).sum()))
     return coarser if coarser.size > grid.size else grid

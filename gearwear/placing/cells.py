@@ -27,6 +27,8 @@ POINTS_PER_CELL = 4
 """Points that a cell should hold on average."""
 FEWEST_SEEN = 3
 """Cells of a column of the fillets that tell how it was cut."""
+LEAST_OF_TOOTH = 0.02
+"""Share of the points on the densest tooth from which on a tooth counts as seen; uneven scans are 30 times as dense in places."""
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 MAX_VARIANCE_RATIO = 4.0
@@ -96,6 +98,23 @@ class CellGrid:
         way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(radius), radius[1:] * np.diff(angle)))])
         edges = np.interp(np.linspace(0.0, way[-1], fillet + 1), way, radius)
         return cls(gear, size, rows, flank, fillet, tip, root, ring, edges)
+
+    @classmethod
+    def for_located(cls, located: SurfacePoints, gear: Gear, points: int, planar: bool = False) -> CellGrid:
+        """`for_scan` with as many points as there would be were all teeth seen, so that the cells of a few teeth are no coarser than in a scan of all.
+
+        Parameters
+        ----------
+        located : SurfacePoints
+            Of the scan, or a sample of it.
+        gear : Gear
+        points : int
+            Of the scan, on the gear.
+        planar : bool
+        """
+        on_tooth = np.bincount(located.tooth[located.surface == FLANK], minlength=gear.teeth)
+        seen = int((on_tooth > LEAST_OF_TOOTH * on_tooth.max()).sum())
+        return cls.for_scan(gear, points if seen == 0 else round(points * gear.teeth / seen), planar=planar)
 
     @staticmethod
     def _arcs(gear: Gear) -> tuple[float, float, float, float]:
