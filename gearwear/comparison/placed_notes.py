@@ -17,7 +17,7 @@ from gearwear.diagnose.effects.view_registration import VIEW_REGISTRATION
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.diagnose.loop import LEVEL_GROUP, or_smoothing
 from gearwear.placing.cells import Cells
-from gearwear.placing.refusal import doubtful_distance, flanks_off
+from gearwear.placing.refusal import doubtful_distance, flanks_off, thicker_by
 from gearwear.placing.smoothing import shared_errors
 from gearwear.placing.together import doubtful, said_of_views
 from gearwear.placing.views import PlacedScan
@@ -65,7 +65,9 @@ def doubts_of(gear: Gear, drawn: Gear, placed: PlacedScan, noise: float) -> tupl
     said = []
     far = flanks_off(placed.located).distance
     if far > doubtful_distance(gear):
-        said.append(f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear")
+        thicker = thicker_by(placed.located, gear)
+        teeth = f" (teeth {abs(thicker):.2f} mm {'thicker' if thicker > 0.0 else 'thinner'})" if math.isfinite(thicker) else ""
+        said.append(f"the flanks of both sides lie {far:.2f} mm off the design{teeth}: check that the scan is of this gear")
     if gear.face_width != drawn.face_width:
         said.append(
             f"the teeth of the scan are {gear.face_width:.4g} mm wide, and the design's face_width is {drawn.face_width:g} mm: taken as seen"

@@ -365,17 +365,33 @@ class SeenRadii:
         Radius of the base circle that the flanks are of.
     tip, root : float
         Where the tip and bottom lands lie.
+    thicker : float
+        By how much the teeth are thicker than the design's, normal arc at the reference circle.
     """
 
     base: float
     tip: float
     root: float
+    thicker: float = math.nan
 
 
 def seen_radii(placed: PlacedScan, gear: Gear) -> SeenRadii:
     """Base, tip and root radius by the scan."""
     lands = rims(placed.measured, gear)
-    return SeenRadii(base_radius(placed.located, gear), lands.tip_radius, lands.root_radius)
+    return SeenRadii(base_radius(placed.located, gear), lands.tip_radius, lands.root_radius, thicker_by(placed.located, gear))
+
+
+def thicker_by(points: SurfacePoints, gear: Gear) -> float:
+    """By how much teeth are thicker than the design's, mm of normal arc at the reference circle; nan where a side was hardly seen.
+
+    The median of each side's points counts, both together: the pose may give one side what it takes off the other. Along the normal in space it is
+    ``arc r_b / r · cos β_b / cos β``.
+    """
+    off = [points.deviation[(points.surface == FLANK) & (points.side == side)] for side in (1, -1)]
+    if min(map(len, off)) < LEAST_FLANK:
+        return math.nan
+    per_arc = gear.base_radius / gear.reference_radius * gear.base_helix_cosine / math.cos(gear.helix_angle)
+    return float(sum(np.median(side) for side in off)) / per_arc
 
 
 def width_seen(points: Floats, gear: Gear) -> float:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from gearwear.design.surface import FLANK, OTHER, TIP, flank_points
+from gearwear.design.gear import Gear
+from gearwear.design.spec import GearSpec
+from gearwear.design.surface import FLANK, OTHER, TIP, flank_points, locate
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing import refusal
-from gearwear.placing.refusal import base_radius, check_gear, flanks_off, runs_otherwise
+from gearwear.placing.refusal import base_radius, check_gear, flanks_off, runs_otherwise, thicker_by
 from tests.placing.placing import designed
 from tests.synthetic import GearNumbers
 
@@ -103,3 +106,20 @@ def test_how_teeth_run_is_told_by_both_halves_together(monkeypatch, lower, upper
     monkeypatch.setattr(refusal, "normal_twist", lambda *_: next(twists))
     words = runs_otherwise(located(2_000).position, GEAR)
     assert said in words and bool(said) is bool(words)
+
+
+@pytest.mark.parametrize("helix", [0.0, 22.0])
+@pytest.mark.parametrize("thinning", [-0.2, 0.1])
+def test_how_much_thicker_teeth_are_comes_back(helix, thinning):
+    """Points of a gear cut so much thicker, on the design without: also where the gear is turned a little, and nothing where one side was not seen."""
+    spec = GearSpec("gear", 25, 3.0, 20.0, helix_angle=math.radians(helix))
+    design, cut = Gear.from_spec(spec), Gear.from_spec(replace(spec, thinning=thinning))
+    random = np.random.default_rng(2)
+    tooth, side = random.integers(0, 25, 20_000), random.choice([1, -1], 20_000)
+    roll, z = random.uniform(design.form_roll + 1.0, design.tip_roll - 1.0, 20_000), random.uniform(1.0, 19.0, 20_000)
+    points = flank_points(cut, tooth, side, roll, z).position
+    turn = 1e-4
+    points = points @ np.array([[math.cos(turn), math.sin(turn), 0.0], [-math.sin(turn), math.cos(turn), 0.0], [0.0, 0.0, 1.0]])
+    located = locate(points, design, workers=1)
+    assert thicker_by(located, design) == pytest.approx(-thinning, abs=2e-4)
+    assert math.isnan(thicker_by(located.take(located.side == 1), design))

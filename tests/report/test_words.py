@@ -261,6 +261,19 @@ class TestWhatTheDrawingShouldSay:
         fitted = self.other(dedendum=self.GEAR.spec.dedendum - shift)
         assert f"of a profile shift of {number(shift, 2)} would" in wrong_design(fitted, seen, drawn=self.GEAR)
 
+    @pytest.mark.parametrize(("helix", "shift"), [(0.0, 0.3), (20.0, 0.2)])
+    def test_profile_shift_under_tip_and_root_as_measured(self, helix, shift):
+        """Where tip and root are stated only the teeth are thicker: by 2 x m tan α, less what the gear has already."""
+        drawn = self.other(helix_angle=math.radians(helix))
+        cut = self.other(helix_angle=math.radians(helix), profile_shift=shift, addendum=1.0 - shift, dedendum=1.25 + shift)
+        arc = (cut.tooth_thickness - drawn.tooth_thickness) * math.cos(cut.helix_angle)
+        said = wrong_design(drawn, replace(self.seen(drawn), thicker=arc))
+        assert f"{number(arc, 2)} mm thicker than drawn, as those of a profile shift of {number(shift, 2)} would be" in spoken(
+            said
+        )
+        for thicker in (-arc, 0.05 * drawn.spec.normal_module):  # worn or thinned, or within what coat and tolerance may do
+            assert wrong_design(drawn, replace(self.seen(drawn), thicker=thicker)) is None
+
     def test_another_tip_alone_is_no_shift(self):
         for other in (
             {"addendum": 1.3},

@@ -26,6 +26,8 @@ FAR_OFF, FAR_OFF_MODULES = 0.1, 0.02
 """RMS outside the wear, mm and modules, all that was found taken out, above both of which a scan is more likely of another gear."""
 SHIFT_ALIKE = 0.05
 """Modules by which tips and roots may lie off each other's distance from the drawn ones for another profile shift."""
+THICKER = 0.07
+"""Modules by which teeth are thicker than drawn, and twice their tolerance, for another profile shift: wear takes off, and cutting for backlash does."""
 COARSEST = 11
 """Class of ISO 1328-1:2013 beyond whose slopes flanks that are alike on both sides are rather of another angle than cut so badly."""
 
@@ -70,6 +72,12 @@ def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0, scale: floa
         return (
             f"tips and roots both lie {number(0.5 * abs(sum(out)), 2)}{SPACE}mm {way} than drawn, as those of a profile shift of {number(shift, 2)} would; "
             f"check profile_shift ({number(gear.spec.profile_shift, 2)} in the design)"
+        )
+    if seen.thicker > max(THICKER * module, 2.0 * (gear.tolerance.thickness or 0.0)):
+        shift = gear.spec.profile_shift + seen.thicker / (2.0 * module * math.tan(gear.normal_pressure_angle))
+        return (
+            f"the teeth are {number(seen.thicker, 2)}{SPACE}mm thicker than drawn, as those of a profile shift of {number(shift, 2)} would be; check profile_shift "
+            f"({number(gear.spec.profile_shift, 2)} in the design) and thinning"
         )
     off = []
     for rim, radius, nominal in (("tip", seen.tip, gear.tip_radius), ("root", seen.root, gear.root_radius)):
