@@ -46,6 +46,9 @@ MUTATIONS = [
     for row in (
         ("report/words/other_design.py", "THICKER = 0.07", "THICKER = 0.04", "report/test_words.py"),
         ("placing/refusal.py", "/ gear.reference_radius * gear.base_helix_cosine / math", "* gear.base_helix_cosine / math", "placing/test_refusal.py"),
+        # scans the wrong way round
+        ("comparison/notes.py", "<= GROWN * math.hypot", "> GROWN * math.hypot", "comparison/test_before.py"),
+        ("comparison/before.py", "changed.with_deviation(-changed", "changed.with_deviation(changed", "comparison/test_before.py"),
         # cells of a few teeth
         ("placing/cells.py", "LEAST_OF_TOOTH = 0.02", "LEAST_OF_TOOTH = 0.2", "placing/test_grid.py"),
         ("placing/cells.py", "round(points * gear.teeth / seen)", "points", "placing/test_grid.py"),

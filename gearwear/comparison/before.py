@@ -20,6 +20,7 @@ from gearwear.placing.cells import Cells
 from gearwear.robust import median_scale
 from gearwear.scan.reading import check_different, read_scan
 from gearwear.scan.types import Scan
+from gearwear.wear.regions import Wear, find_wear
 
 MOST_ROUNDS = 3
 """Of the loop, until the sides that changed are those it left out; numerical."""
@@ -91,3 +92,20 @@ def sides_that_changed(after: MeasuredGear, unworn: MeasuredGear) -> frozenset[S
         if few and middle > least:
             sides.add(side)
     return frozenset(sides)
+
+
+def grown_since(after: MeasuredGear, unworn: MeasuredGear, scatter: float) -> Wear:
+    """Where the later scan has more metal than that of the gear before wear, as if it were worn there the other way round.
+
+    Parameters
+    ----------
+    after, unworn : MeasuredGear
+        Of the worn gear, and of the same before.
+    scatter : float
+        Of what changed, mm.
+    """
+    changed = what_changed(after, unworn)
+    sides = sides_that_changed(unworn, after)
+    return find_wear(
+        changed.with_deviation(-changed.points.deviation), scatter, sides, after.loop, limits=False, gone=after.gone | unworn.gone
+    )

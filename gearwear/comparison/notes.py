@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -36,6 +37,8 @@ ELSEWHERE = 0.2
 """Share of tips, fillets or roots that must be seen for a coat to show on them."""
 BY_CHANCE = 1e-3
 """Chance below which one wave of pitch errors is more than that."""
+GROWN = 3.0
+"""Standard deviations by which more metal came than went between two scans for them to be the wrong way round."""
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -49,6 +52,7 @@ def notes_of(
     pair: PairResult | None,
     ahead: Ahead | None,
     seam: DriftSeam | None = None,
+    grown: Wear | None = None,
 ) -> tuple[str, ...]:
     """All notes of a comparison, each a sentence.
 
@@ -67,9 +71,12 @@ def notes_of(
         What was to be forecast.
     seam : DriftSeam or None
         The tooth that is told too thin or too thick were pitch errors a drift of the scan.
+    grown : Wear or None
+        Where the scan has more metal than that before wear (`grown_since`); None without one.
     """
     gear, unworn = measured.gear, before is not None
     return (
+        *_other_way_round(wear, grown),
         *measured.doubts,  # what changes the meaning of numbers first: a terminal shows the first few
         *like_a_table(measured.loop, design.scanner),
         *off_the_drawing(measured.loop),
@@ -351,3 +358,13 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     if pair is None or pair.law is None:
         return ("no forecast: the wear law needs a mate, and the design has one gear",)
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
+
+
+def _other_way_round(wear: Wear, grown: Wear | None) -> tuple[str, ...]:
+    """That the gear has more metal than before its wear, where that is more than it has lost."""
+    if grown is None or grown.volume - wear.volume <= GROWN * math.hypot(grown.volume_std, wear.volume_std):
+        return ()
+    flanks = counted(len(grown.regions), "flank")
+    return (
+        f"the scan of --before has some {significant(grown.volume, 2)} mm³ less metal than the later one, on {flanks}: are they the wrong way round?",
+    )

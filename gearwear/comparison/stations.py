@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
+from gearwear.comparison.before import grown_since, told_by_both, unworn_gear, what_changed
 from gearwear.comparison.closing import measure
 from gearwear.comparison.consequences import Change, meshing_changes, wear_changes
 from gearwear.comparison.contact_readings import ContactNumbers, OtherReadings, ReadGear, contact_limits, other_readings
@@ -158,7 +158,7 @@ def compare(
         inspection=inspected[0] if len(inspected) == 1 else None,
         halves=inspected if len(inspected) == 2 else (),
         changes=(*changes, *thicker, *(() if met is None else met.changes)),
-        notes=notes_of(design, measured, remarks, wear, scanned.same, pair, ahead, thickness.seam),
+        notes=notes_of(design, measured, remarks, wear, scanned.same, pair, ahead, thickness.seam, scanned.grown),
         before_files=() if scanned.unworn is None else tuple(name for scan in scanned.unworn.scans for name in scan.files),
         same_teeth=scanned.same,
         patterns=kept_patterns(measured),
@@ -197,6 +197,11 @@ class Scanned:
         """The wear in some cells of this scan; options as `find_wear` has them."""
         loop, gone = self.measured.loop, self.measured.gone
         return find_wear(cells, self.scatter, self.worn_sides, loop, limits=limits, gone=gone, errors=errors, as_stiff=as_stiff)
+
+    @property
+    def grown(self) -> Wear | None:
+        """Where the scan has more metal than that before wear; None without one."""
+        return None if self.unworn is None else grown_since(self.measured, self.unworn, self.scatter)
 
     @property
     def as_made_points(self) -> SurfacePoints:

@@ -43,6 +43,19 @@ def test_an_even_loss_of_a_side_is_wear_and_no_thinner_tooth(tmp_path, before, w
     assert not any("thinner teeth" in note for note in results.notes)
 
 
+def test_scans_the_wrong_way_round_are_told(tmp_path, before):
+    """All left flanks are worn, by the sliding."""
+    worn, scan = scan_file(tmp_path, "worn", replace(NEW, wear=(SlidingWear(30.0, 1),)), 6)
+    with plain_effects():
+        told, other = (
+            compare(ALONE, later, before=first, inspection=False).notes for later, first in ((before, worn), (worn, before))
+        )
+    (said,) = [note for note in told if "the wrong way round?" in note]
+    assert "on 12 flanks" in said
+    assert float(said.split("some ")[1].split(" mm³")[0]) == pytest.approx(scan.truth.volume_mm3, rel=0.15)
+    assert not any("wrong way round" in note for note in other)
+
+
 def test_a_coat_of_the_later_scan_is_no_loss_of_a_side(tmp_path, before):
     with plain_effects():
         after = measure(ALONE, scan_file(tmp_path, "after", COATED, 5)[0])
