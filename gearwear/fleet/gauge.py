@@ -97,6 +97,8 @@ class GaugeStudy:
     reproducibility : Scatter or None
         Of all scans of a gear, whoever made them; None with one operator.
     accord : Accord
+    without_wear : int
+        Of those left out, how many found no wear.
     """
 
     quantity: str
@@ -110,6 +112,7 @@ class GaugeStudy:
     repeatability: Scatter | None
     reproducibility: Scatter | None
     accord: Accord = Accord.UNKNOWN
+    without_wear: int = 0
 
 
 def gauge_study(quantity: str, flank: str, scans: Sequence[Repeat]) -> GaugeStudy | None:
@@ -144,6 +147,7 @@ def gauge_study(quantity: str, flank: str, scans: Sequence[Repeat]) -> GaugeStud
         operators=operators,
         repeats=repeats,
         left_out=len(scans) - values.size,
+        without_wear=sum(not scan.found for scan in scans),
         variance=gauge_variance(values) if len(parts) > 1 else None,
         stated=math.sqrt(float(np.mean(np.square(stated)))) if stated else math.nan,
         repeatability=scatter(repeated.values()),

@@ -78,8 +78,10 @@ def _span(span: Reach, unit: float, name: str) -> str:
         if span.low == 0.0:
             return "not by its line, perhaps at any time"
         return "not by its line" if math.isinf(span.low) else f"not before {end(span.low)}{name}"
+    if span.low == 0.0 and math.isinf(span.high):
+        return f"whether and when it reaches the limit is open (by its line in {end(span.value)}{name})"
     if span.low == 0.0:
-        between = f"up to {end(span.high)}" if math.isfinite(span.high) else "at any time"
+        between = f"up to {end(span.high)}"
     else:
         between = f"{end(span.low)} to {end(span.high)}" if math.isfinite(span.high) else f"from {end(span.low)} on"
     return f"{end(span.value)}{name} ({between})"

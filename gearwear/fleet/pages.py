@@ -144,7 +144,7 @@ def gauge_page(studies: Sequence[GaugeStudy], scans: Mapping[tuple[str, str], Se
     return environment(HERE).get_template("gauge.html.j2").render(
         subject=words.study_words(studies) if studies else "", verdict=words.accord_words(studies) if studies else words.NOTHING_REPEATED,
         rows=[_gauge_row(study) for study in studies], cards=cards, heights=heights, cannot=words.REPEATS_CANNOT,
-        why_empty="" if any(study.variance for study in studies) else words.ONE_GEAR,
+        why_empty=" ".join(words.empty_words(studies)),
         operators="; ".join(max(studies, key=lambda study: len(study.operators)).operators) if studies else "", footer=_footer(),
     )  # fmt: skip
 

@@ -18,8 +18,17 @@ HIDDEN = 2.0
 """Where no wear was found, how much may be there over what an even patch at the detection limit has: a hollow is twice as deep as on
 average, and two patches may hide."""
 
-GEAR, TOOTH, PATTERN, MARK = "gear", "tooth", "pattern", "mark"
-"""Scope of a row: a number of the whole gear, its worst as a rule, or of one tooth or flank; or what the teeth can be known again by."""
+NOT_SEEN = 0.25
+"""Share of a flank below which it was not seen, where it says nothing of its wear."""
+SILENT = 0.1
+"""Share of the flanks that may say nothing of their wear although more of them was seen: beyond, a part of the gear was not looked at. A few thin
+flanks are in every scan, and low places on them in the range of the volume."""
+
+GEAR, TOOTH, PATTERN, MARK, DOUBT = "gear", "tooth", "pattern", "mark", "doubt"
+"""Scope of a row: a number of the whole gear, its worst as a rule, or of one tooth or flank; what the teeth can be known again by; or what
+puts the whole scan in question."""
+DOUBTFUL, UNSEEN = "doubtful: ", "unseen: "
+"""What the names of such rows begin with: before the words of a doubt, or before how many flanks say nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,7 +39,7 @@ class Quantity:
     ----------
     name : str
         With its unit, such as ``wear_depth_mm``.
-    scope : {"gear", "tooth", "pattern", "mark"}
+    scope : {"gear", "tooth", "pattern", "mark", "doubt"}
     value : float
     std : float
         Stated standard deviation; nan where none is stated.
@@ -72,8 +81,34 @@ def quantities(report: Json) -> list[Quantity]:
         ),
         *_patterns(report.get("scan") or {}),
         *_mark((report.get("scan") or {}).get("mark")),
+        *_doubts(report),
     ]
     return [row for row in rows if math.isfinite(row.value)]
+
+
+def _doubts(report: Json) -> Iterator[Quantity]:
+    """What makes the whole result doubtful, a row each, and how many flanks say nothing of their wear where that leaves a part of the gear open.
+
+    A flank of a tooth that is broken off is gone, and not unseen; one with wear on it was seen.
+    """
+    for text in report.get("doubtful") or []:
+        yield Quantity(name=f"{DOUBTFUL}{text}", scope=DOUBT, value=1.0)
+    wear: Json = report.get("wear") or {}
+    worn = {(region["tooth"], region["flank"]) for region in wear.get("regions") or []}
+    gone = {piece["tooth"] for piece in report.get("broken") or [] if piece.get("seen", True)}
+    flanks = [flank for flank in wear.get("flanks") or [] if flank["tooth"] not in gone]
+    seen = [
+        _number(flank.get("seen"))
+        for flank in flanks
+        if not math.isfinite(_number(flank.get("detection_limit_um"))) and (flank["tooth"], flank["flank"]) not in worn
+    ]
+    unseen = sum(share < NOT_SEEN for share in seen)
+    if len(seen) > max(unseen, SILENT * len(flanks)):
+        yield Quantity(
+            name=f"{UNSEEN}{len(seen)} of {len(flanks)} flanks say nothing of their wear", scope=DOUBT, value=float(len(seen))
+        )
+    elif unseen:
+        yield Quantity(name=f"{UNSEEN}{unseen} of {len(flanks)} flanks were not seen", scope=DOUBT, value=float(unseen))
 
 
 def _number(value: object) -> float:
@@ -98,18 +133,20 @@ def _wear(report: Json) -> Iterator[Quantity]:
     if regions:
         yield from _estimate(f"wear_{size}", GEAR, wear.get(size))
         yield _deepest(depths)
-    elif size in wear:  # nothing was found: what might be there all the same
+    elif size in wear and math.isfinite(depth):  # nothing was found: what might be there all the same
         high = float(np.fmax(depth * patch, _number(wear[size].get("high"))))
         yield Quantity(name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=high)
         yield Quantity(name="wear_depth_mm", scope=GEAR, value=0.0, low=0.0, high=max(depth, HIDDEN * open_[1]))
-    yield from _estimate("lost_volume_mm3", GEAR, wear.get("lost_volume_mm3"))
+    if regions or math.isfinite(depth):  # where no flank could have shown any, how much is gone is not known, and not nothing
+        yield from _estimate("lost_volume_mm3", GEAR, wear.get("lost_volume_mm3"))
     seen = {(region["tooth"], region["flank"]) for region in regions}
     for region, depth_there in zip(regions, depths, strict=True):
         yield from _estimate(f"wear_{size}", TOOTH, region.get(size), tooth=int(region["tooth"]), flank=str(region["flank"]))
         yield depth_there
     for flank in wear.get("flanks") or []:
-        if (flank["tooth"], flank["flank"]) not in seen:
-            high = max(HIDDEN * 1e-3 * _number(flank.get("detection_limit_um")), HIDDEN * open_[1])
+        own = HIDDEN * 1e-3 * _number(flank.get("detection_limit_um"))
+        if (flank["tooth"], flank["flank"]) not in seen and math.isfinite(own):
+            high = max(own, HIDDEN * open_[1])
             yield Quantity(
                 name="wear_depth_mm",
                 scope=TOOTH,
@@ -190,18 +227,12 @@ def _thickness(report: Json) -> Iterator[Quantity]:
 def _meshing(meshing: Json) -> Iterator[Quantity]:
     worn: Json = meshing.get("worn") or {}
     play: Json = worn.get("backlash") or {}
-    yield Quantity(
-        name="backlash_mm",
-        scope=GEAR,
-        value=_number(play.get("circumferential_mm")),
-        std=_number(play.get("circumferential_mm_std")),
-    )
-    yield Quantity(
-        name="transmission_error_um",
-        scope=GEAR,
-        value=_number(worn.get("transmission_error_um")),
-        std=_number(worn.get("transmission_error_um_std")),
-    )
+    for name, record, key in (
+        ("backlash_mm", play, "circumferential_mm"),
+        ("transmission_error_um", worn, "transmission_error_um"),
+    ):
+        value, std, low, high = (_number(record.get(f"{key}{end}")) for end in ("", "_std", "_low", "_high"))
+        yield Quantity(name=name, scope=GEAR, value=value, std=std, low=low, high=high)
     law: Json = meshing.get("wear_law") or {}
     sliding: Json | None = (law.get("terms") or {}).get("sliding")
     if sliding is not None:

@@ -9,12 +9,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gearwear.design.quantity import listed
+from gearwear.fleet.doubts import NO_DOUBTS, Doubts, doubts_by_scan, together
 from gearwear.fleet.gauge import GaugeStudy, Repeat, gauge_study, in_accord
 from gearwear.fleet.line import beyond
 from gearwear.fleet.manifest import read_moment, shown_time
 from gearwear.fleet.order import Occasion, order_of
 from gearwear.fleet.outcome import State
-from gearwear.fleet.quantities import GEAR, MARK, PATTERN, TOOTH
+from gearwear.fleet.quantities import DOUBT, GEAR, MARK, PATTERN, TOOTH
 from gearwear.fleet.store import Listed, Store
 from gearwear.fleet.tables import read_tables
 from gearwear.fleet.teeth import NumberedScan, doubt, numbered_scans, tooth_rows
@@ -37,6 +38,8 @@ class StoredFleet:
         How the tooth numbers of each scan go with those of the gear's first, by key.
     teeth : tuple of dict
         Numbers of teeth and flanks, in those tooth numbers.
+    doubts : dict of str to Doubts
+        Of the scans that have any, by key.
     """
 
     rows: tuple[Listed, ...]
@@ -44,6 +47,7 @@ class StoredFleet:
     numbers: tuple[dict[str, Any], ...]
     scans: Mapping[str, NumberedScan] = field(default_factory=dict)
     teeth: tuple[dict[str, Any], ...] = ()
+    doubts: Mapping[str, Doubts] = field(default_factory=dict)
 
     @property
     def waiting(self) -> int:
@@ -69,7 +73,9 @@ def read_fleet(store: Store) -> StoredFleet:
     patterns = (row for row in read_tables(tables, PATTERN) if row["converged"])  # else teeth are nowhere, the first scan's too
     scans = numbered_scans(patterns, read_tables(tables, MARK))
     teeth = tuple(tooth_rows(read_tables(tables, TOOTH), scans))
-    return StoredFleet(tuple(rows), states, tuple(read_tables(tables, GEAR)), scans, teeth)
+    return StoredFleet(
+        tuple(rows), states, tuple(read_tables(tables, GEAR)), scans, teeth, doubts_by_scan(read_tables(tables, DOUBT))
+    )
 
 
 def trends(fleet: StoredFleet) -> list[GearTrend]:
@@ -110,7 +116,9 @@ def _gear(
         notes.append(f"{len(lost)} of {len(rows)} scans left out: their registration did not settle")
     doubtful = doubt(scan for scan in fleet.scans.values() if scan.gear_id == gear_id)
     notes += [doubtful] if doubtful else []
-    readings = [_reading(row, inspections) for row in numbers if row["key"] not in lost]
+    readings = [_reading(row, inspections, fleet.doubts) for row in numbers if row["key"] not in lost]
+    if not readings:  # with a reading its doubts are those of the inspection
+        notes += together(fleet.doubts[row.key] for row in rows if row.key in fleet.doubts and row.key not in lost).words
     last = order_of(inspections.values()).last
     limits = _strictest(row.limits for row in rows if inspections[row.key] in last)
     return gear_trend(gear_id, readings, limits, notes, inspections.values())
@@ -135,12 +143,13 @@ def _inspections(rows: Sequence[Listed]) -> dict[str, Occasion]:
     return inspections
 
 
-def _reading(row: Mapping[str, Any], inspections: Mapping[str, Occasion]) -> Reading:
+def _reading(row: Mapping[str, Any], inspections: Mapping[str, Occasion], doubts: Mapping[str, Doubts]) -> Reading:
     """From a row of a table."""
     inspection = _inspection(row, inspections)
     return Reading(
         gear_id=row["gear_id"], quantity=row["quantity"], value=row["value"], std=_known(row["std"]), inspected=inspection.inspected,
         cycles=inspection.cycles, which=inspection.which, low=_known(row["low"]), high=_known(row["high"]),
+        doubts=doubts.get(row["key"], NO_DOUBTS),
     )  # fmt: skip
 
 

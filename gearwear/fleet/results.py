@@ -8,7 +8,7 @@ from typing import Any
 
 from gearwear.fleet.anova import Component
 from gearwear.fleet.gauge import GaugeStudy
-from gearwear.fleet.trend import Advance, GearTrend, Trend
+from gearwear.fleet.trend import Advance, GearTrend, Point, Trend
 
 TREND_COLUMNS: dict[str, type] = {
     "rank": int, "gear_id": str, "gear_conformity": str, "quantity": str, "inspections": int, "first": datetime, "last": datetime,
@@ -16,14 +16,14 @@ TREND_COLUMNS: dict[str, type] = {
     "change": float, "change_std": float, "change_low": float, "change_high": float, "change_p": float, "change_significant": bool,
     "rate": float, "rate_std": float, "rate_low": float, "rate_high": float, "per": str, "rate_p": float, "rate_significant": bool, "from_new": bool, "line_misfit": float, "line_bends": bool, "left": float,
     "left_low": float, "left_high": float, "limit_on": datetime, "limit_on_earliest": datetime, "limit_on_latest": datetime,
-    "notes": str,
+    "doubtful": str, "unseen": str, "notes": str,
 }  # fmt: skip
 """Columns of ``trend.csv``: a row for each gear and quantity; `left` in cycles or days, as `per` says."""
 
 POINT_COLUMNS: dict[str, type] = {
     "gear_id": str, "quantity": str, "inspected": datetime, "cycles_run": float, "scans": int, "value": float, "std": float, "low": float,
     "high": float, "change": float, "change_std": float, "change_low": float, "change_high": float, "change_p": float,
-    "change_significant": bool,
+    "change_significant": bool, "doubtful": str, "unseen": str,
 }  # fmt: skip
 """Columns of ``inspections.csv``: a row for each gear, quantity and inspection; the change is from the one before, where their order is known."""
 
@@ -57,7 +57,7 @@ def _trend_row(trend: Trend) -> dict[str, Any]:
     row: dict[str, Any] = {
         "quantity": trend.quantity, "inspections": len(trend.points), "first": first.inspected, "last": last.inspected,
         "cycles_run": last.cycles, "value": last.value, "std": last.std, "low": last.low, "high": last.high, "limit": trend.limit,
-        "conformity": _word(trend.conformity),
+        "conformity": _word(trend.conformity), **_doubts(last),
     }  # fmt: skip
     if trend.steps:
         row |= _change(trend.steps[-1])
@@ -76,6 +76,10 @@ def _trend_row(trend: Trend) -> dict[str, Any]:
     return row
 
 
+def _doubts(point: Point) -> dict[str, Any]:
+    return {"doubtful": "; ".join(point.doubts.grave), "unseen": "; ".join(point.doubts.unseen)}
+
+
 def _change(step: Advance) -> dict[str, Any]:
     return {
         "change": step.value, "change_std": step.std, "change_low": step.low, "change_high": step.high, "change_p": step.p_value,
@@ -92,6 +96,7 @@ def point_rows(gears: Iterable[GearTrend]) -> list[dict[str, Any]]:
                 row: dict[str, Any] = {
                     "gear_id": gear.gear_id, "quantity": trend.quantity, "inspected": point.inspected, "cycles_run": point.cycles,
                     "scans": point.scans, "value": point.value, "std": point.std, "low": point.low, "high": point.high,
+                    **_doubts(point),
                 }  # fmt: skip
                 if i and trend.steps:
                     row |= _change(trend.steps[i - 1])

@@ -85,7 +85,7 @@ def read_tables(files: Sequence[Path], scope: str) -> list[dict[str, Any]]:
     ----------
     files : sequence of Path
         Parquet files as `rows_parquet` makes them.
-    scope : {"gear", "tooth", "pattern", "mark"}
+    scope : {"gear", "tooth", "pattern", "mark", "doubt"}
 
     Returns
     -------

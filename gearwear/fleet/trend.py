@@ -10,8 +10,9 @@ from itertools import compress, pairwise
 
 import numpy as np
 
-from gearwear.design.quantity import NORMAL_95
+from gearwear.design.quantity import NORMAL_95, significant
 from gearwear.fleet.conformity import COVERAGE, GOOD_TO_BAD, Conformity, conformity, worst
+from gearwear.fleet.doubts import DOUBTED, NO_DOUBTS, Doubts, together
 from gearwear.fleet.line import FittedLine, Reach, beyond, chance_of, fit_line, interval, line_from_new, own_range, reaches
 from gearwear.fleet.order import Occasion, Order, order_of
 from gearwear.fleet.significance import discoveries
@@ -32,7 +33,11 @@ NOTHING_AT_FIRST = {
 """What a new gear has none of: one inspection with its cycles then gives a rate since new."""
 CYCLES, DAYS = "cycle", "day"
 WORN_OFF = ("wear_volume_mm3", "wear_area_mm2")
-"""What does not fall on the same gear."""
+"""What does not fall on the same gear: then there is no rate of any of its numbers."""
+ONLY_GROW = (*WORN_OFF, "wear_depth_mm", "thickness_loss_mm", "backlash_mm", "lost_volume_mm3")
+"""What wear makes larger and nothing makes smaller; a fall is told."""
+FALLEN = 3.0
+"""Standard deviations by which a number that can only grow must fall for the gear to be doubted."""
 OTHER_GEAR = (
     "its wear fell from one inspection to the next, so no rate is given: is it the same gear? One that was put in its place needs a gear_id of"
     " its own"
@@ -58,6 +63,8 @@ class Reading:
         As in `Occasion`.
     low, high : float
         Within what limits the number lies where more than scatter is open; else nan.
+    doubts : Doubts
+        Of its scan.
     """
 
     gear_id: str
@@ -69,6 +76,7 @@ class Reading:
     which: int = 0
     low: float = math.nan
     high: float = math.nan
+    doubts: Doubts = NO_DOUBTS
 
     @property
     def inspection(self) -> Occasion:
@@ -89,6 +97,8 @@ class Point:
     low, high : float
         The range of its scans, their own 95 % in it; nan where none has one.
     scans : int
+    doubts : Doubts
+        Of any of its scans.
     """
 
     inspected: datetime | None
@@ -99,6 +109,7 @@ class Point:
     high: float
     scans: int
     which: int = 0
+    doubts: Doubts = NO_DOUBTS
 
     @property
     def inspection(self) -> Occasion:
@@ -118,6 +129,13 @@ class Point:
     def ends(self) -> tuple[float, float]:
         """What a decision goes by: the range with U, two standard deviations, at either end; nan where nothing is stated."""
         return interval(self.value, *self.open, COVERAGE * self.noise)
+
+    def judged(self, limit: float) -> Conformity:
+        """How it keeps a limit: a doubtful result proves nothing, and what was not seen does not prove that a limit is kept."""
+        state = conformity(*self.ends, limit)
+        if self.doubts.grave or (self.doubts.unseen and state is Conformity.CONFORMING):
+            return Conformity.NEITHER
+        return state
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,7 +167,17 @@ class Advance:
     @property
     def falls(self) -> bool:
         """Whether it is less than nothing by more than three standard deviations, whatever the ranges leave open."""
-        return self.high < (NORMAL_95 - 3.0) * self.std
+        return not self.doubtful and self.high < (NORMAL_95 - FALLEN) * self.std
+
+    @property
+    def seems_to_fall(self) -> bool:
+        """Whether it is that by the ± alone, or by the ranges."""
+        return not self.doubtful and (self.falls or self.value < -FALLEN * self.std < 0.0)
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether one of its ends proves nothing."""
+        return bool(self.before.doubts.grave or self.after.doubts.grave)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -235,12 +263,15 @@ class GearTrend:
         The worst of those with a limit.
     notes : tuple of str
         What the reader must know.
+    missing : tuple of str
+        Quantities with a limit of which there is no number.
     """
 
     gear_id: str
     trends: Mapping[str, Trend]
     conformity: Conformity | None
     notes: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
 
     @property
     def nearest(self) -> Trend | None:
@@ -302,10 +333,33 @@ def gear_trend(
         )
     if trends and order.note:
         remarks.append(order.note)
+    doubtful = [reading.doubts for reading in readings if reading.inspection in order.last]
+    remarks += together(doubtful).words
+    older = {reading.inspection for reading in readings if reading.doubts.grave} - order.last
+    if older:
+        remarks.append(f"{len(older)} of {len(measured)} inspections are doubtful, and in no rate")
     if any(step.falls for name in WORN_OFF if name in trends for step in trends[name].steps):
         remarks.append(OTHER_GEAR)
         trends = {name: replace(trend, clock="", line=None, left=None) for name, trend in trends.items()}
-    return GearTrend(gear_id=gear_id, trends=trends, conformity=worst(judged), notes=tuple(remarks))
+    else:
+        remarks += _fallen(trends)
+    return GearTrend(
+        gear_id=gear_id, trends=trends, conformity=worst(judged), notes=tuple(remarks), missing=tuple(missing) if trends else ()
+    )
+
+
+def _fallen(trends: Mapping[str, Trend]) -> list[str]:
+    """The numbers that only grow on the same gear and fell, by their ± at least: in one note, each by its last such step."""
+    steps = {name: [step for step in trends[name].steps if step.seems_to_fall] for name in ONLY_GROW if name in trends}
+    last = {name: found[-1] for name, found in steps.items() if found}
+    if not last:
+        return []
+    told = ", ".join(
+        f"{name} from {significant(step.before.value)} to {significant(step.after.value)}" for name, step in last.items()
+    )
+    open_ = not any(step.falls for step in last.values())
+    ranges = ", unless the two reports answer otherwise what their ranges leave open" if open_ else ""
+    return [f"what wear only makes larger fell: {told}{ranges}: {DOUBTED}"]
 
 
 def with_significance(gears: Sequence[GearTrend]) -> list[GearTrend]:
@@ -373,6 +427,7 @@ def _point(inspection: Occasion, scans: Sequence[Reading]) -> Point:
     stated = math.sqrt(float(np.mean(np.square(stds)))) if np.isfinite(stds).all() else math.nan
     seen = float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else 0.0
     ends = [own_range(scan.value, scan.std, scan.low, scan.high) for scan in scans]
+    blind = any(not scan.std > 0.0 and math.isfinite(scan.low) and not math.isfinite(scan.high) for scan in scans)
     open_ = any(math.isfinite(scan.low) or math.isfinite(scan.high) for scan in scans)
     return Point(
         inspected=inspection.inspected,
@@ -381,15 +436,20 @@ def _point(inspection: Occasion, scans: Sequence[Reading]) -> Point:
         value=float(values.mean()),
         std=max(stated, seen) if math.isfinite(stated) else math.nan,
         low=min(low for low, _ in ends) if open_ else math.nan,
-        high=max(high for _, high in ends) if open_ else math.nan,
+        high=max(high for _, high in ends) if open_ and not blind else math.nan,
         scans=len(scans),
+        doubts=together(scan.doubts for scan in scans),
     )
 
 
 def _trend(gear_id: str, quantity: str, readings: Sequence[Reading], limit: float | None, order: Order) -> Trend:
     points, state = _worst_last(points_of(readings, order), limit, order)
     clock, places = _places(points)
-    usable = [(place, point) for place, point in zip(places, points, strict=False) if point.noise > 0.0 or any(point.open)]
+    usable = [
+        (place, point)
+        for place, point in zip(places, points, strict=False)
+        if (point.noise > 0.0 or any(point.open)) and not point.doubts.grave
+    ]
     line, from_new = None, False
     if clock and len(usable) > 1:
         x, y, std = (np.array(values) for values in zip(*((place, p.value, p.noise) for place, p in usable), strict=True))
@@ -407,7 +467,7 @@ def _trend(gear_id: str, quantity: str, readings: Sequence[Reading], limit: floa
         from_new=from_new,
         limit=limit,
         conformity=state,
-        left=None if limit is None or line is None else _left(line, limit, places[-1], state),
+        left=None if limit is None or line is None or points[-1].doubts.grave else _left(line, limit, places[-1], state),
         per_day=_per_day(points),
     )
 
@@ -428,7 +488,7 @@ def _worst_last(points: tuple[Point, ...], limit: float | None, order: Order) ->
     """
 
     def judge(point: Point) -> Conformity | None:
-        return None if limit is None else conformity(*point.ends, limit)
+        return None if limit is None else point.judged(limit)
 
     def badness(point: Point) -> tuple[int, float]:
         state = judge(point)
@@ -466,5 +526,6 @@ def _step(before: Point, after: Point) -> Advance:
     down, up = after.open[0] + before.open[1], after.open[1] + before.open[0]
     low, high = interval(value, down, up, NORMAL_95 * std)
     return Advance(
-        before=before, after=after, value=value, std=std, low=low, high=high, p_value=chance_of(value, down, up, std)
+        before=before, after=after, value=value, std=std, low=low, high=high,
+        p_value=math.nan if before.doubts.grave or after.doubts.grave else chance_of(value, down, up, std),
     )  # fmt: skip

@@ -6,10 +6,10 @@ import math
 import textwrap
 from collections.abc import Sequence
 
-from gearwear.design.quantity import NORMAL_95, counted, listed, sentence, significant, unbroken
+from gearwear.design.quantity import NORMAL_95, SPACE, counted, listed, sentence, significant, unbroken
 from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.gauge import Accord, GaugeStudy, Scatter
-from gearwear.fleet.labels import left_words, rate_words, shown, title_of
+from gearwear.fleet.labels import left_words, rate_words, shown, title_of, unit_of
 from gearwear.fleet.outcome import State
 from gearwear.fleet.reading import StoredFleet
 from gearwear.fleet.trend import GearTrend, Trend
@@ -20,6 +20,8 @@ MOST = 15
 """Gears on the terminal."""
 NAMED = 5
 """Gears without a result that the verdict names."""
+LOPSIDED = 4.0
+"""Standard deviations that a range must reach for it to be told in place of the number with its ±, as the report does."""
 NAME = 23
 """Letters of a quantity's name on the terminal."""
 MAIN = ("wear_volume_mm3", "wear_area_mm2", "wear_depth_mm", "thickness_loss_mm", "backlash_mm")
@@ -116,26 +118,35 @@ def state_words(gear: GearTrend) -> str:
 def gear_words(gear: GearTrend) -> str:
     """What is most urgent on a gear: the quantity nearest to its limit, or how fast it wears."""
     trend = gear.nearest
+    if trend is None and gear.missing:
+        return f"{listed([title_of(name) for name in gear.missing])} not known"
     if trend is None:
         trend = gear.trends.get("wear_volume_mm3") or next(iter(gear.trends.values()), None)
         return "no scan gave one" if trend is None else f"{title_of(trend.quantity)} {value_words(trend)}, {rate_words(trend)}"
     clauses = [f"{title_of(trend.quantity)} {value_words(trend)} of {significant(trend.limit)}"]
     if trend.left is not None and trend.conformity is not Conformity.NOT_CONFORMING:
         reach = left_words(trend)
-        clauses.append(f"limit {reach}" if reach.startswith(("not", "reached")) else f"limit in {reach}")
+        head = "" if reach.startswith("whether") else "limit " if reach.startswith(("not", "reached")) else "limit in "
+        clauses.append(head + reach)
     return ", ".join(clauses)
 
 
 def value_words(trend: Trend) -> str:
-    """The value of the last inspection with its ±, and its range where that is wider; where nothing was found, what might be there."""
+    """The value of the last inspection with its ±; its range beside it where that is wider, and in its place where the ± says nothing beside it;
+    where nothing was found, what might be there."""
     last = trend.last
+    where = "on what was seen " if last.doubts.unseen else ""
     if last.value == 0.0 and not last.std > 0.0 and math.isfinite(last.high):
-        return f"none seen, below {shown(trend.quantity, last.high, math.nan)}"
-    words = shown(trend.quantity, last.value, last.std)
+        none = f"{where}none" if where else "none seen"
+        return f"{none}, below {shown(trend.quantity, last.high, math.nan)}"
+    words = where + shown(trend.quantity, last.value, last.std)
     if not any(last.open):
         return words
     down, up = (far or NORMAL_95 * last.noise for far in last.open)
-    return f"{words} (may be {significant(last.value - down)} to {significant(last.value + up)})"
+    ends = f"{significant(last.value - down)} to {significant(last.value + up)}"
+    if max(down, up) > LOPSIDED * last.noise > 0.0:
+        return f"{where}{SPACE.join(filter(None, (ends, unit_of(trend.quantity))))} (likeliest {significant(last.value)})"
+    return f"{words} (may be {ends})"
 
 
 def gauge_lines(studies: Sequence[GaugeStudy]) -> list[tuple[str, str]]:
@@ -146,9 +157,25 @@ def gauge_lines(studies: Sequence[GaugeStudy]) -> list[tuple[str, str]]:
     lines.append((f"  {'':<{NAME}}{'repeating':>12}{'operators':>10}{'GRR':>6}{'ndc':>5}  repeats / stated", "dim"))
     for study in studies:
         lines.append((f"  {gauge_line(study)}", "yellow" if study.accord in (Accord.MORE, Accord.OPERATORS) else ""))
-    if not any(study.variance for study in studies):
-        lines += [("", ""), *wrapped(f"! {ONE_GEAR}", "yellow")]
+    lines += [line for why in empty_words(studies) for line in (("", ""), *wrapped(f"! {why}", "yellow"))]
     return [*lines, ("", "")]
+
+
+def empty_words(studies: Sequence[GaugeStudy]) -> list[str]:
+    """Why columns are empty, a sentence each: of all quantities, or of those of which too many scans are left out."""
+    empty = [study for study in studies if study.variance is None]
+    if len(empty) == len(studies):
+        return [ONE_GEAR] if studies else []
+    by_why: dict[tuple[int, int], list[str]] = {}
+    for study in empty:
+        why = study.left_out - study.without_wear, study.without_wear
+        by_why.setdefault(why, []).append(title_of(study.quantity, study.flank))
+    said = []
+    for (unmatched, without), names in by_why.items():
+        left_out = [f"{without} that found no wear"] * (without > 0) + [f"{unmatched} without a match"] * (unmatched > 0)
+        scans = f"; of the scans {listed(left_out)} {'is' if unmatched + without == 1 else 'are'} left out" if left_out else ""
+        said.append(f"Of {listed(names)} there is one gear alone{scans}.")
+    return [*said[:-1], f"{said[-1]} {ONE_GEAR}"] if said else []
 
 
 def study_words(studies: Sequence[GaugeStudy]) -> str:

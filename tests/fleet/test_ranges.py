@@ -158,7 +158,7 @@ def test_where_neither_can_be_said_the_limit_may_be_reached_now_and_that_is_what
     assert gear.nearest.quantity == QUANTITY and gear.trends["wear_depth_mm"].conformity is Conformity.CONFORMING
     assert (gear.nearest.left.low, gear.nearest.left.value > 0.0) == (0.0, True)
     words = gear_words(gear).replace("\u202f", " ")
-    assert re.match(r"worn volume 14\.00 ± 0\.20 mm³ \(may be 9\.00 to 60\.0\) of 50\.0, limit in .* \(up to ", words)
+    assert re.match(r"worn volume 9\.00 to 60\.0 mm³ \(likeliest 14\.0\) of 50\.0, limit in .* \(up to ", words)
 
 
 def test_what_the_last_inspection_proves_the_line_does_not_take_back():
@@ -182,10 +182,26 @@ def test_repeats_of_which_one_found_nothing_are_as_open_as_both_say():
     assert (point.low, point.high) == (0.0, pytest.approx(5.0 + 1.96 * 0.2))
 
 
-def test_a_volume_that_falls_within_its_ranges_is_no_other_gear():
-    ranges = [(1.0, 21.0), (0.0, 19.0)]
-    assert gear_trend("G1", readings([20.0, 2.0], ranges=ranges), {}).notes == ()
-    assert "is it the same gear?" in gear_trend("G1", readings([20.0, 2.0]), {}).notes[0]
+def test_a_volume_that_falls_within_its_ranges_is_asked_about_and_keeps_its_rate():
+    """Another answer to one question explains it, or another gear: 46 mm³ and then 3.4, which may be up to 196, had no word."""
+    ranges = [(30.0, 50.0), (3.1, 196.0)]
+    gear = gear_trend("G1", readings([46.0, 3.4], ranges=ranges), {})
+    (note,) = gear.notes
+    assert note.startswith(
+        "what wear only makes larger fell: wear_volume_mm3 from 46.0 to 3.40, unless the two reports answer otherwise"
+    )
+    assert note.endswith("is it the same gear, and the same design?") and gear.trends[QUANTITY].line is not None
+    assert (
+        gear_trend("G1", readings([46.0, 45.5], ranges=[(30.0, 50.0), (30.0, 50.0)]), {}).notes == ()
+    )  # 1.8 standard deviations
+    assert "no rate is given: is it the same gear?" in gear_trend("G1", readings([20.0, 2.0]), {}).notes[0]
+
+
+def test_a_range_stands_in_place_of_a_number_that_it_makes_nothing_of():
+    """Within four standard deviations it stands beside the ±."""
+    for high, words in ((10.7, "10.00 ± 0.20 mm³ (may be 9.61 to 10.7)"), (11.0, "9.61 to 11.0 mm³ (likeliest 10.0)")):
+        said = value_words(trend_of(readings([10.0], ranges=[(10.0 - 1.96 * 0.2, high)])))
+        assert said.replace("\u202f", " ").replace("\xa0", " ") == words
 
 
 def test_tables_and_page_hold_what_is_open(tmp_path):
@@ -198,7 +214,9 @@ def test_tables_and_page_hold_what_is_open(tmp_path):
         scans.append((row("A", DAY + timedelta(60 * i), 1e6 * (i + 1)), given))
     store = store_of(tmp_path / "store", scans, {QUANTITY: 45.9})
     said = run("trend", store.folder)
-    assert said.status == 3 and "(may be 10.0 to 45.0) of 45.9" in " ".join(said.out.split())
+    assert said.status == 3 and "worn volume 10.0 to 45.0 mm³ (likeliest 40.0) of 45.9, whether and when" in " ".join(
+        said.out.split()
+    )
     with (store.folder / "trend" / "trend.csv").open(encoding="utf-8", newline="") as stream:
         (line,) = [one for one in csv.DictReader(stream) if one["quantity"] == QUANTITY]
     scatter = 1.96 * math.hypot(0.5, 0.5)

@@ -35,7 +35,7 @@ from gearwear.report.records.teeth import mark_record, pattern_values, same_teet
 from gearwear.report.records.unexplained import unexplained_record
 from gearwear.report.records.views import view_record
 from gearwear.report.records.wear_law import wear_law_record
-from gearwear.report.words.verdict import doubts_of_design, noise, weighed_words
+from gearwear.report.words.verdict import doubts_of_design, grave_doubts, noise, weighed_words
 from gearwear.wear.regions import Wear, WearRegion
 
 SCHEMA = "gearwear.report/1"
@@ -89,6 +89,7 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         "inspection_halves": {str(half): as_dict(inspection) for half, inspection in zip(Half, results.halves, strict=True)}
         if results.halves
         else None,
+        "doubtful": grave_doubts(results),
         "notes": [*doubts_of_design(results), *weighed_words(results.weighed), *results.notes],
         "files": list(files),
     }
