@@ -290,7 +290,7 @@ MUTATIONS = [
         ("wear/regions.py", ", volumes.apart[where[:, 1]])", ", 0.0)", "wear/test_made_apart.py"),
         ("wear/thickness.py", "loss_std=math.hypot(lost.std[tooth], self._made_std[tooth])", "loss_std=float(lost.std[tooth])", "comparison/test_made_apart.py"),
         ("meshing/worn_gear.py", "_most_lost(profiles) if profiles.lost is None else profiles.lost", "_most_lost(profiles)", "design/test_profiles.py"),
-        ("wear/thickness.py", "self.as_made if self.drawn is None else self.drawn, made_std=None", "self.as_made", "wear/test_thickness.py"),
+        ("wear/thickness.py", "drawn = self.as_made if self.drawn is None else self.drawn", "drawn = self.as_made", "wear/test_thickness.py"),
         ("comparison/seam.py", "tooth not in (told.tooth, other.tooth)", "tooth < 0", "comparison/test_seam.py"),
         ("comparison/seam.py", "abs(by) < 0.5 * abs(closure)", "abs(by) < 0.0 * abs(closure)", "comparison/test_seam.py"),
         ("comparison/seam.py", "reach = NORMAL_95 * relative_std", "reach = 0.0 * relative_std", "comparison/test_seam.py"),

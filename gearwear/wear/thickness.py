@@ -298,15 +298,21 @@ class SectionThickness(Card):
 
     def most_lost(self) -> MostLost | None:
         """The greatest loss of the gear; None where no tooth was seen on both sides."""
-        if not np.isfinite(self.lost).any():
-            return None
-        least, at_z, _ = self._most_lost
-        std = math.hypot(least.overall_std, self._made_std[least.curve])
-        return MostLost(least.curve, -least.overall, std, float(at_z[least.curve]))
+        return self._greatest(self._made_std)
 
     def below_drawing(self) -> MostLost | None:
         """The same from what is drawn: what was lost, and what the teeth were made thinner by; None likewise."""
-        return replace(self, as_made=self.as_made if self.drawn is None else self.drawn, made_std=None).most_lost()
+        drawn = self.as_made if self.drawn is None else self.drawn
+        of = self if np.array_equal(drawn, self.as_made) else self.against(drawn)
+        return of._greatest(np.zeros(len(self.arc)))
+
+    def _greatest(self, made_std: Floats) -> MostLost | None:
+        """The greatest loss, of teeth of which is known to (teeth,) mm how thick they were made; None where no tooth was seen on both sides."""
+        if not np.isfinite(self.lost).any():
+            return None
+        least, at_z, _ = self._most_lost
+        std = math.hypot(least.overall_std, made_std[least.curve])
+        return MostLost(least.curve, -least.overall, std, float(at_z[least.curve]))
 
     @property
     def _made_std(self) -> Floats:

@@ -332,6 +332,11 @@ def test_the_greatest_loss_is_that_of_the_worn_tooth():
     # Drawn 30 µm thicker than they were made, it is below the drawing by that more, and known as well as what is left of it.
     below = replace(found, drawn=made + 0.03, made_std=np.full(21, 0.02)).below_drawing()
     assert (below.tooth, below.value, below.std) == (7, pytest.approx(most.value + 0.03, abs=1e-9), pytest.approx(most.std))
+    # Made as drawn, the loss is the same, and what of it is not known of the making no matter.
+    below, lost = (
+        getattr(replace(found, drawn=made.copy(), made_std=np.full(21, 0.02)), of)() for of in ("below_drawing", "most_lost")
+    )
+    assert (below.value, below.std) == (most.value, most.std) and lost.std == pytest.approx(np.hypot(most.std, 0.02))
 
 
 def test_the_nominal_is_as_drawn():
