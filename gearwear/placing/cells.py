@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from typing import TypeVar
+from weakref import finalize
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,11 @@ FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 MAX_VARIANCE_RATIO = 4.0
 """Variance inside a cell, in that of the noise, above which something else than noise is in it."""
+REMEMBERED = 20_000
+"""Points from which on the cells that they lie in are kept; numerical."""
+
+_known_cells: dict[int, dict[int, tuple[CellGrid, Ints]]] = {}
+"""By the identity of the points and of the grid, which is held here."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,7 +255,17 @@ class CellGrid:
         return start + size
 
     def index(self, points: SurfacePoints) -> Ints:
-        """Cell of each point, (n,) int64; −1 where the surface is OTHER."""
+        """Cell of each point, (n,) int64; −1 where the surface is OTHER. Of many points it is kept while they are, and nobody may change it: it is asked for again and again."""
+        if len(points) < REMEMBERED:
+            return self._index(points)
+        known = _known_cells.setdefault(id(points), {})
+        if id(self) not in known:
+            if not known:
+                finalize(points, _known_cells.pop, id(points)).atexit = False
+            known[id(self)] = self, self._index(points)
+        return known[id(self)][1]
+
+    def _index(self, points: SurfacePoints) -> Ints:
         if compiled.pays(len(points)):
             from gearwear.placing.compiled_index import cells_at
 

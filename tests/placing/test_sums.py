@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FLANK, SurfacePoints, flank_points
-from gearwear.placing.cells import CellGrid, Cells, bin_points, cells_of
+from gearwear.placing.cells import REMEMBERED, CellGrid, Cells, _known_cells, bin_points, cells_of
 from gearwear.placing.pits import FarReach, find_far_points, hanging_together
 from gearwear.placing.strays import StrayLimits, near_centre
 from gearwear.placing.sums import CellSums
@@ -151,3 +153,17 @@ def test_pooled_cells_hold_all_points() -> None:
         assert pooled.highest is not None
         assert pooled.highest[one] == pytest.approx(deviation.max() - deviation.mean(), abs=1e-12)
     assert (pooled.points.surface[pooled.seen] == FLANK).all()
+
+
+def test_cells_of_many_points_are_kept_while_the_points_are() -> None:
+    """Of points in place of others, and on another grid, they are found anew."""
+    points, other = scattered(), scattered().take(np.arange(POINTS)[::-1])
+    assert len(points) >= REMEMBERED
+    first = GRID.index(points)
+    assert GRID.index(points) is first
+    np.testing.assert_array_equal(GRID.index(other), first[::-1])
+    coarse = replace(GRID, rows=GRID.rows // 2)
+    np.testing.assert_array_equal(coarse.index(points), coarse._index(points))
+    held = len(_known_cells)
+    del points, other
+    assert len(_known_cells) == held - 2
