@@ -57,9 +57,10 @@ class Fit:
         """(m,) 1 / mm²; 0 outside the fit."""
         return np.where(self.use, self.covariance.weight, 0.0)
 
-    def problem(self, unit: float, context: Context, always: frozenset[str] = frozenset()) -> Problem:
-        """The search problem over all candidates."""
-        gram = self._gram(self.dictionary.blocks)
+    def problem(self, unit: float, context: Context, always: frozenset[str] = frozenset(), known: Gram | None = None) -> Problem:
+        """The search problem over all candidates; `known` are the statistics of this fit with fewer columns."""
+        columns = self.dictionary.blocks
+        gram = self._gram(columns) if known is None else known.widened(columns, self.target, self.weight)
         return Problem(self.dictionary, gram, unit, context, always)
 
     def columns(self, model: Model) -> Floats:

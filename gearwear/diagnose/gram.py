@@ -53,6 +53,20 @@ class Gram:
                 moment[f][which] += part.T @ aim[at]
         return cls(information, moment, square, total)
 
+    def widened(self, columns: tuple[CellColumns, ...], target: Floats, weight: Floats) -> Gram:
+        """The statistics, all rows together, with those of columns that have come behind: blocks of all of them, and what these statistics are of."""
+        before, p = self.information.shape[1], sum(block.count for block in columns)
+        information, moment = np.zeros((p, p)), np.zeros(p)
+        information[:before, :before], moment[:before] = self.information[0], self.moment[0]
+        root = np.sqrt(weight)
+        aim = target * root
+        for at, which, part in _weighted(columns, root, np.flatnonzero(root)):
+            own, new = part[:, which >= before], which[which >= before]
+            information[which[:, None], new] += part.T @ own
+            moment[new] += own.T @ aim[at]
+        information[before:, :before] = information[:before, before:].T
+        return Gram(information[None], moment[None], self.square, self.weight)
+
     @classmethod
     def whole(cls, columns: Floats, target: Floats, weight: Floats) -> Gram:
         """The same of columns (m, p) that are not zero on many rows, all together."""
@@ -171,7 +185,8 @@ def _weighted(columns: Floats | tuple[CellColumns, ...], root: Floats, rows: Int
     """Some rows at a time, the columns that are not zero on them, and these times `root`; `rows` are those where that is not 0."""
     if not isinstance(columns, tuple):
         for start in range(0, len(rows), BATCH):
-            at = rows[start : start + BATCH]
+            # Of all rows without a copy.
+            at = slice(start, start + BATCH) if len(rows) == len(root) else rows[start : start + BATCH]
             yield at, np.arange(columns.shape[1]), columns[at] * root[at, None]
         return
     starts = np.cumsum([0, *(block.count for block in columns)]).tolist()

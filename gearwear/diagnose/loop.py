@@ -382,7 +382,7 @@ def _search(
         alike = polished is not None and _same(model, polished[0], context) and _settled(use, polished[1], sound)
         if round_ >= 1 and not alike:
             if dictionary is not fit.dictionary:
-                problem = Fit(fit.cells, fit.target, dictionary, use, fit.covariance).problem(unit, context, always)
+                problem = replace(fit, dictionary=dictionary).problem(unit, context, always, problem.gram)
             start = model
             dictionary, model = polish(problem, model, fit.cells, fit.target, use, fit.covariance)
             polished = (model, use) if model is start else None

@@ -300,10 +300,11 @@ class _Scan:
         """The best model beside what is needed of some columns (m, k) that flanks were made with, at the price (k,) of each."""
         seen = free[self.rows]
         fitted = self.robust(np.hstack([self.columns(model), seen]))
-        if free.shape[1]:
-            model = self._searched(model, free, fitted.weight)  # what stood in for it need not stay
+        (wide, gram), added = self._beside(free, fitted.weight), self.fit.dictionary.count + np.arange(free.shape[1])
+        if len(added):
+            model = exchange(self._problem(wide, gram, added), model)  # what stood in for it need not stay
         needed = self._needed(model, seen, price, fitted.weight)
-        model = self._searched(model, free[:, needed], fitted.weight)
+        model = exchange(self._problem(wide, gram, added[needed]), model)
         needed = self._needed(model, seen, price, fitted.weight)
         own = self.columns(model)
         fitted = self.robust(np.hstack([own, seen[:, needed]]))

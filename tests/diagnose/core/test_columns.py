@@ -35,6 +35,17 @@ def test_sums_are_those_of_the_columns_in_full(seed, folds):
     np.testing.assert_array_equal([one.square, one.weight], [other.square, other.weight])
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_sums_go_on_with_columns_that_come_behind(seed):
+    values, target, weight, _ = case(seed)
+    one = np.zeros(ROWS, np.int64)
+    first, more = CellColumns.of(values[:, :6], CUTS), CellColumns.of(values[:, 6:], CUTS)
+    widened = Gram.of((first,), target, weight, one, 1).widened((first, more), target, weight)
+    other = Gram.of(values, target, weight, one, 1)
+    for name in ("information", "moment", "square", "weight"):
+        np.testing.assert_allclose(getattr(widened, name), getattr(other, name), rtol=1e-13, atol=1e-13)
+
+
 def test_columns_come_back_as_they_were():
     values, *_ = case(1)
     kept = CellColumns.gathered((values[:, i : i + 2] for i in range(0, 9, 2)), CUTS, together=3)
