@@ -20,7 +20,7 @@ from gearwear.design.profiles import nominal_profiles
 from gearwear.errors import InputError
 from gearwear.meshing import tooth_pair
 from gearwear.meshing.contact import mesh_contact
-from gearwear.processors import _within_reach, beside, each, idle_processors
+from gearwear.processors import _within_reach, beside, each, idle_processors, room
 
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="helpers are forked on Linux alone")
 
@@ -45,6 +45,20 @@ def test_a_library_forks_nothing() -> None:
 
 @on_linux
 class TestHelpers:
+    def test_what_they_write_into_a_room_is_there(self, three: None) -> None:
+        written = room(4, 2)
+        assert not written.any() and room(0, 3).shape == (0, 3)
+
+        def write(at: int) -> int:
+            written[at] = at, os.getpid()
+            time.sleep(0.05)  # so that every helper has some
+            return os.getpid()
+
+        with idle_processors():
+            by = each([partial(write, at) for at in range(4)])
+        np.testing.assert_array_equal(written, np.column_stack([np.arange(4), by]))
+        assert len(set(by)) > 1
+
     @pytest.mark.parametrize("count", [2, 3])
     def test_calls_run_at_the_same_time(self, three: None, count: int) -> None:
         together = multiprocessing.get_context("fork").Barrier(count, timeout=60)

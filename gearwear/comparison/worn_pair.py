@@ -24,7 +24,7 @@ from gearwear.meshing.slices import facing_mate, heights_beside
 from gearwear.meshing.spread import ContactSpread, contact_spread
 from gearwear.meshing.study import facing
 from gearwear.placing.cells import CellGrid
-from gearwear.processors import each
+from gearwear.processors import each, room
 from gearwear.wear.profiles import ProfileNodes, node_heights, without_added_metal, worn_profiles
 from gearwear.wear.smooth import WornSurface
 
@@ -101,14 +101,16 @@ class RunningGear:
         )
         fields_back = (fields.raw, *fields.taken.values()) if fields.raw.any() else ()
 
-        def scattered(surfaces: Floats, off: Floats) -> list[Floats]:
+        found = room(2, len(sizes), *present.half_angle.shape)
+
+        def scattered(surfaces: Floats, off: Floats, out: Floats) -> None:
             """Half angles alone: they come from another process, and the gear is this one's."""
-            return [sides.lacking(depth).profiles(added).half_angle for depth, added in zip(surfaces, off, strict=True)]
+            for depth, added, half_angle in zip(surfaces, off, out, strict=True):
+                half_angle[...] = sides.lacking(depth).profiles(added).half_angle
 
         other = np.roll(np.arange(len(sizes)), -1)
         also = surface.draws + surface.draws[other] - surface.depth, effects_off + effects_off[other]
-        calls = [partial(scattered, surface.draws, effects_off), partial(scattered, *also)]
-        found = each(calls) if len(sizes) else ([], [])
+        each([partial(scattered, surface.draws, effects_off, found[0]), partial(scattered, *also, found[1])])
         drawn, drawn_again = (tuple(replace(present, half_angle=psi) for psi in one) for one in found)
         return cls(
             present,
