@@ -129,8 +129,9 @@ class Beside:
 
     def _across(self, at: Ints) -> Floats:
         """Sums of the columns at some places (…) with all, (…, q); 0 of `NOTHING`."""
-        across = self.information[at]
-        across[at == NOTHING] = 0.0
+        across, nothing = self.information.take(at, axis=0), at == NOTHING
+        if nothing.any():
+            across[nothing] = 0.0
         return across
 
     def solve(self, which: Ints) -> tuple[Floats, Floats]:

@@ -253,19 +253,20 @@ class Passes:
 
         An advance is the greatest value along a flank, so to first order it changes by what the flanks change where they touch.
         """
-        touching = np.isfinite(contact.advance)
+        touching = np.flatnonzero(np.isfinite(contact.advance))
+        of_row = touching % contact.advance.shape[1]
         row, places = np.arange(len(self.driver.z)), []
         for base, number, flank, radius in (
             (self.driver, tooth, side, contact.radius),
             (self.driven, self.mate(tooth, side), self.mate_side(side), contact.mate_radius),
         ):
-            knot, part = place_among(base.radius, radius)
+            knot, part = place_among(base.radius, radius.ravel()[touching])
             teeth, sides, rows, knots = base.half_angle.shape
-            start = ((number[:, None] % teeth * sides + flank.index) * rows + row).ravel() * knots + knot
+            start = ((number[:, None] % teeth * sides + flank.index) * rows + row).ravel()[of_row] * knots + knot
             was = base.half_angle.ravel()
             places.append((part, [(at, was.take(at)) for at in (start, start + 1)]))
         for variant in variants:
-            change = np.zeros_like(contact.advance)
+            change, everywhere = np.zeros(len(touching)), np.zeros_like(contact.advance)
             for base, other, (part, ends) in zip(
                 (self.driver, self.driven), (variant.driver, variant.driven), places, strict=True
             ):
@@ -273,7 +274,8 @@ class Passes:
                     now = other.half_angle.ravel()
                     low, high = (now.take(at) - was for at, was in ends)
                     change += base.gear.base_radius * ((1.0 - part) * low + part * high)
-            yield np.where(touching, change, 0.0)
+            everywhere.ravel()[touching] = change
+            yield everywhere
 
     def positions(
         self, block: PassBlock | PassPlaces, tolerance: float, variants: Sequence[Passes] = ()

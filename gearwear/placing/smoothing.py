@@ -44,8 +44,9 @@ def _ratios(flank: SurfacePoints) -> list[float]:
     at = np.stack([flank.roll, flank.position[:, 2]]).T  # each way by itself in memory: spans along it take a third of the time
     tree = cKDTree(flank.position)
     result, left, own = [], np.full(len(at), np.nan), np.zeros(len(at), np.bool_)
-    for patch in _patches(at):
-        nearest = tree.query(flank.position[patch], k=2)[1][:, 1]
+    patches = _patches(at)
+    nearest_of = tree.query(flank.position[np.concatenate(patches)], k=2)[1][:, 1]
+    for patch, nearest in zip(patches, np.split(nearest_of, np.cumsum([len(patch) for patch in patches])[:-1]), strict=True):
         plane = np.column_stack([np.ones(len(patch)), at[patch] - at[patch].mean(axis=0)])
         fitted, _, rank, _ = np.linalg.lstsq(plane, flank.deviation[patch], rcond=None)
         left[patch] = rest = flank.deviation[patch] - plane @ fitted

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Sequence
+from html import escape
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -72,7 +72,7 @@ def write_3mf(path: Path, bodies: Sequence[Triangles], names: Sequence[str]) -> 
         vertices = '<vertex x="%.9g" y="%.9g" z="%.9g"/>' * len(body.vertices) % tuple(body.vertices.ravel().tolist())
         triangles = '<triangle v1="%d" v2="%d" v3="%d"/>' * len(body.faces) % tuple(body.faces.ravel().tolist())
         objects.append(
-            f'<object id="{number}" name={quoteattr(name)} type="model"><mesh><vertices>{vertices}</vertices>'
+            f'<object id="{number}" name="{escape(name)}" type="model"><mesh><vertices>{vertices}</vertices>'
             f"<triangles>{triangles}</triangles></mesh></object>"
         )
         items.append(f'<item objectid="{number}"/>')
