@@ -292,7 +292,8 @@ def design_unit(dictionary: Dictionary, use: Bools, covariance: CellCovariance) 
     """Expected gain of a column that explains nothing: median over the candidates of bᵀWΣWb / bᵀWb; at least 1."""
     picks = [c.columns[0] for c in dictionary.candidates]
     picks = picks[:: max(1, len(picks) // rules().unit_picks)]
-    columns = np.where(use[:, None], dictionary.take(np.array(picks)), 0.0)
+    columns = dictionary.take(np.array(picks))
+    columns[~use] = 0.0
     weighted = columns * covariance.weight[:, None]
     top = (weighted * covariance.apply(weighted)).sum(axis=0)
     bottom = (weighted * columns).sum(axis=0)

@@ -37,8 +37,8 @@ MAX_VARIANCE_RATIO = 4.0
 REMEMBERED = 20_000
 """Points from which on the cells that they lie in are kept; numerical."""
 
-_known_cells: dict[int, dict[int, tuple[CellGrid, Ints]]] = {}
-"""By the identity of the points and of the grid, which is held here."""
+_known_cells: dict[int, dict[tuple[int | bytes, ...], tuple[CellGrid, Ints]]] = {}
+"""By the identity of the points, and by what a grid divides its gear into; the grid holds the gear."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,11 +259,12 @@ class CellGrid:
         if len(points) < REMEMBERED:
             return self._index(points)
         known = _known_cells.setdefault(id(points), {})
-        if id(self) not in known:
+        division = (id(self.gear), self.rows, self.flank, self.tip, self.root, self.ring, self.fillet_radius.tobytes())
+        if division not in known:
             if not known:
                 finalize(points, _known_cells.pop, id(points)).atexit = False
-            known[id(self)] = self, self._index(points)
-        return known[id(self)][1]
+            known[division] = self, self._index(points)
+        return known[division][1]
 
     def _index(self, points: SurfacePoints) -> Ints:
         if compiled.pays(len(points)):

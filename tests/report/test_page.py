@@ -7,6 +7,7 @@ import hashlib
 import io
 import json
 import re
+from contextlib import nullcontext
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -16,6 +17,7 @@ import pytest
 from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.textpath import TextToPath
 from PIL import Image
 
 from gearwear.comparison.contact_readings import ReadOtherwise
@@ -309,3 +311,24 @@ def test_what_is_spared_in_a_drawing_is_not_seen():
 def test_the_same_input_gives_the_same_bytes(tmp_path, full):
     write_html(tmp_path / "report.html", view.view_of(fake_results(), fake_arrays(), FILES))
     assert (tmp_path / "report.html").read_text("utf-8") == full
+
+
+def test_a_text_is_measured_once_and_the_picture_is_the_same(monkeypatch):
+    measured, own = [], TextToPath.get_text_width_height_descent
+
+    def counted(self, s, prop, ismath):
+        measured.append((s, prop.get_size(), ismath))
+        return own(self, s, prop, ismath)
+
+    def drawn():
+        with rc_context(figures.STYLE):
+            figure = Figure(figsize=(4, 3))
+            figure.add_subplot(xlabel="depth [$\\mu$m]", title="of all flanks").plot([0.0, 30.0], [1.0, 2.0])
+        return blocks.svg(figure, "one")
+
+    monkeypatch.setattr(TextToPath, "get_text_width_height_descent", counted)
+    written, once = drawn(), len(measured)
+    assert once == len(set(measured)) > 10
+    assert TextToPath.get_text_width_height_descent is counted
+    monkeypatch.setattr(blocks, "_measured_once", nullcontext)
+    assert drawn() == written and len(measured) > 2 * once

@@ -5,8 +5,10 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache, partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -180,7 +182,7 @@ def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:
 
     buffer, dpi = io.StringIO(), figure.dpi
     blank = {"Date": None, "Creator": None, "Format": None, "Type": None}
-    with rc_context(STYLE):
+    with rc_context(STYLE), _measured_once():
         FigureCanvasSVG(figure)  # measures type as it will write it
         # matplotlib's own "tight" draws everything once more to find this box.
         box = figure.get_tightbbox().padded(0.04) if trim else None
@@ -198,6 +200,20 @@ def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:
     return Markup(
         text.replace(size[0], f'style="width:{share:.1f}%;height:auto;--natural:{float(size[1]) * 96.0 / 72.0:.0f}px"', 1)
     )  # matplotlib escapes what it writes
+
+
+@contextmanager
+def _measured_once() -> Iterator[None]:
+    """In the body a text is measured for the file once, and not for the box round all and again for the drawing."""
+    from matplotlib.textpath import TextToPath
+
+    measure = TextToPath.get_text_width_height_descent
+    known = cache(partial(measure, TextToPath()))
+    TextToPath.get_text_width_height_descent = lambda self, s, prop, ismath: known(s, prop.copy(), ismath)  # type: ignore[method-assign]
+    try:
+        yield
+    finally:
+        TextToPath.get_text_width_height_descent = measure  # type: ignore[method-assign]
 
 
 def _by_palette(image: str) -> str:
