@@ -187,7 +187,7 @@ class Problem:
 
 def penalty(candidate: Candidate, seen: Bools | None = None) -> float:
     """What a candidate must be worth: each of its columns, or those that are `seen`; shape values count as parameters."""
-    columns = len(candidate.columns) if seen is None else int(seen[candidate.columns].sum())
+    columns = len(candidate.columns) if seen is None else int(np.count_nonzero(seen[candidate.columns]))
     return free_penalty(columns) + rules().parameter_penalty * rules().shape_price * len(candidate.shape)
 
 
