@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from typing import TypeVar
-from weakref import finalize
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
 from gearwear.design.twist import Segment, section_angle, segments
+from gearwear.placing.known_cells import cells_kept
 from gearwear.placing.strays import near_centre
 from gearwear.placing.sums import CellSums
 
@@ -34,11 +34,6 @@ FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 MAX_VARIANCE_RATIO = 4.0
 """Variance inside a cell, in that of the noise, above which something else than noise is in it."""
-REMEMBERED = 20_000
-"""Points from which on the cells that they lie in are kept; numerical."""
-
-_known_cells: dict[int, dict[tuple[int | bytes, ...], tuple[CellGrid, Ints]]] = {}
-"""By the identity of the points, and by what a grid divides its gear into; the grid holds the gear."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,16 +250,9 @@ class CellGrid:
         return start + size
 
     def index(self, points: SurfacePoints) -> Ints:
-        """Cell of each point, (n,) int64; −1 where the surface is OTHER. Of many points it is kept while they are, and nobody may change it: it is asked for again and again."""
-        if len(points) < REMEMBERED:
-            return self._index(points)
-        known = _known_cells.setdefault(id(points), {})
+        """Cell of each point, (n,) int64; −1 where the surface is OTHER. Of many points it is kept (`cells_kept`)."""
         division = (id(self.gear), self.rows, self.flank, self.tip, self.root, self.ring, self.fillet_radius.tobytes())
-        if division not in known:
-            if not known:
-                finalize(points, _known_cells.pop, id(points)).atexit = False
-            known[division] = self, self._index(points)
-        return known[division][1]
+        return cells_kept(points, division, self, self._index)
 
     def _index(self, points: SurfacePoints) -> Ints:
         if compiled.pays(len(points)):

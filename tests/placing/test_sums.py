@@ -10,7 +10,8 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FLANK, SurfacePoints, flank_points
-from gearwear.placing.cells import REMEMBERED, CellGrid, Cells, _known_cells, bin_points, cells_of
+from gearwear.placing.cells import CellGrid, Cells, bin_points, cells_of
+from gearwear.placing.known_cells import REMEMBERED, _known
 from gearwear.placing.pits import FarReach, find_far_points, hanging_together
 from gearwear.placing.strays import StrayLimits, near_centre
 from gearwear.placing.sums import CellSums
@@ -164,6 +165,6 @@ def test_cells_of_many_points_are_kept_while_the_points_are() -> None:
     np.testing.assert_array_equal(GRID.index(other), first[::-1])
     coarse = replace(GRID, rows=GRID.rows // 2)
     np.testing.assert_array_equal(coarse.index(points), coarse._index(points))
-    held = len(_known_cells)
+    held = len(_known)
     del points, other
-    assert len(_known_cells) == held - 2
+    assert len(_known) == held - 2
