@@ -14,14 +14,14 @@ from gearwear.comparison.consequences import Change
 from gearwear.comparison.contact_readings import ContactLimits
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.comparison.open_sizes import size_limits
-from gearwear.comparison.open_volume import OpenVolume
+from gearwear.comparison.open_volume import Open, OpenVolume
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.comparison.weighed import WeighedLoss, weighed_loss
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.quantity import counted
+from gearwear.design.quantity import counted, significant
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import MEASURED, Kind
@@ -396,10 +396,13 @@ class Results(Card):
         return ~(near | find_far_points(located, grid)[1])
 
     def headline(self) -> str:
+        open_, limits, unit = "", self.volume_range, UNIT[self.planar]
+        if limits is not None and self.open_volume.widest not in (None, Open.FAINT):
+            open_ = f" ({significant(limits[0], 2)} to {significant(limits[1], 2)} {unit} are not excluded)"
         if not self.wear.regions:
-            return f"{self.part} of {self.gear.teeth} teeth, no wear found"
-        size = measured(self.wear.volume, self.wear.volume_std, UNIT[self.planar])
-        return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
+            return f"{self.part} of {self.gear.teeth} teeth, no wear found{open_}"
+        size = measured(self.wear.volume, self.wear.volume_std, unit)
+        return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}{open_}"
 
     def rows(self) -> list[CardRow]:
         rows = [("registration", self.measured.placed.registration.headline())]

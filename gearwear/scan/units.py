@@ -80,7 +80,7 @@ def check_size(scan: Scan, gear: Gear) -> None:
     for name in OFFERED:
         there = ratio * UNITS[name] / UNITS[scan.units]
         fits = bool(((there >= least) & (there <= 1.1)).all())
-        if name == scan.units and fits:
+        if UNITS[name] == UNITS[scan.units] and fits:
             return
         miss = abs(float(np.log(there[0])))
         if (fits or (impossible and 0.2 <= there[0] <= 1.2)) and miss < best:

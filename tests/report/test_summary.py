@@ -125,6 +125,15 @@ def test_limits_of_the_volume_hold_its_own_95_percent():
     assert "the likeliest is 90.80 ± 0.51 mm³" in verdict(results).replace("\u202f", " ").replace("\u00a0", " ")
 
 
+def test_the_headline_tells_the_range_too():
+    """For who works from Python it is the verdict."""
+    assert "not excluded" not in fake_results().headline()
+    results = changed(fake_results(), "wear.undecided", ((2.0, 0.1),))
+    assert results.headline().endswith("in 3 regions (1.8 to 92 mm³ are not excluded)")
+    none = changed(results, "wear.found.regions", ())
+    assert "no wear found (" in changed(none, "wear.found.volume", 0.0).headline()
+
+
 def test_a_range_hardly_wider_than_the_deviation_says_comes_after_it():
     results = changed(fake_results(), "wear.undecided", ((89.8, 0.5),))
     said = verdict(results).replace("\u202f", " ").replace("\u00a0", " ")

@@ -42,6 +42,10 @@ def test_the_right_unit_is_named_and_no_other(pinion: Gear, part: str, said: str
         check_size(scan, pinion)
 
 
+def test_a_unit_by_its_other_name_is_the_same(pinion: Gear) -> None:
+    check_size(scan_of(WHOLE, "inch"), pinion)
+
+
 @pytest.mark.parametrize("piece", ["half", "tooth", "patch of a flank", "half a section"])
 def test_a_part_of_the_gear_is_not_refused(pinion: Gear, piece: str) -> None:
     points = {"half": WHOLE[WHOLE[:, 0] > np.median(WHOLE[:, 0])], "tooth": TOOTH, "patch of a flank": PATCH}
