@@ -29,6 +29,8 @@ is written as TOML, with what remains of every dimension and what else was near.
 Check it against the drawing."""
 NEAR = 10.0
 """Others are called near up to this cost above the best."""
+NOTE = "Note: "
+"""How a doubt begins in the head of the file."""
 USUAL = (8.0, 2000.0)
 """Tip diameters, mm, beyond which the unit of a scan is asked after."""
 TOLERANCE = 0.05
@@ -187,7 +189,7 @@ def _measured_thinning(spec: GearSpec) -> list[str]:
     if not spec.thinning_measured:
         return []
     return [
-        "Note: thinning is as the gear was measured, and an even loss of all its flanks looks the same: thinning_from says so, and what the",
+        f"{NOTE}thinning is as the gear was measured, and an even loss of all its flanks looks the same: thinning_from says so, and what the",
         "teeth may have lost to be so thin is in the range that compare tells. If the drawing has it, or a tooth that never ran is measured:",
         "put that value there and leave thinning_from out.",
     ]
@@ -212,6 +214,8 @@ def _others(best: Proposal, others: Sequence[Proposal]) -> list[str]:
     if not near:
         return ["Nothing else in use comes near."]
     lines = ["Also near; the number says how much less likely, of which 6 is strong evidence:"]
+    if any(proposal.cost < best.cost for proposal in near):
+        lines[0] = f"{lines[0][:-1]}; below 0 by the dimensions alone, the scan fits worse:"
     for proposal in near:
         residuals = ", ".join(f"{1e3 * residual:+z.0f}" for residual in proposal.residuals)
         lines.append(f"  {proposal.cost - best.cost:+5.1f}  {proposal.name}; remains {residuals} µm")
@@ -244,7 +248,7 @@ def _tips(gear: Gear, first: float, left: Sequence[SurfaceLeft]) -> list[str]:
         if abs(located - first) > max(CLEAR * tip.scatter, UNLIKE * gear.normal_module):
             better = gear.spec.addendum + tip.median / gear.normal_module
             return [
-                f"Note: points on the tips lie at diameter {located:.3f} mm on this gear, not at {first:.3f} mm as first seen; addendum = {better:.3f}",
+                f"{NOTE}points on the tips lie at diameter {located:.3f} mm on this gear, not at {first:.3f} mm as first seen; addendum = {better:.3f}",
                 "would reach them: check the tip diameter on the part.",
             ]
     return []
@@ -280,12 +284,21 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     header += _told(best.proposal, seen)
     header += ["Left on the scan, fitted to it (median and scatter of the deviations):"]
     header += [f"  {surface.surface:<40}{1e3 * surface.median:>+z9.1f} ± {1e3 * surface.scatter:.1f} µm" for surface in best.left]
-    header += _tips(best.gear, 2.0 * seen.tip_radius, best.left)
+    tips, doubts = _tips(best.gear, 2.0 * seen.tip_radius, best.left), _doubts(seen, best)
+    header += tips
     header += _others(best.proposal, [candidate.proposal for candidate in candidates.ranked[1:]])
-    header += _doubts(seen, best)
+    header += doubts
     header += _measured_thinning(best.gear.spec)
     text = design_text(best.gear.spec, header, _remarks(arguments, seen, best))
-    return text, f"{seen.teeth} teeth, {best.proposal.name}"
+    return text, "\n".join([f"{seen.teeth} teeth, {best.proposal.name}", *_warned([*tips, *doubts])])
+
+
+def _warned(notes: Sequence[str]) -> list[str]:
+    """Notes of the file, of which each begins with `NOTE`, as warnings for the terminal."""
+    from gearwear.design.quantity import sentence
+    from gearwear.report.words.clauses import wrapped
+
+    return [line for note in " ".join(notes).split(NOTE)[1:] for line in wrapped(f"! {sentence(note.strip())}", 80, 9)]
 
 
 def _remarks(arguments: Namespace, seen: Survey, best: CandidateGear) -> dict[str, str]:
@@ -314,20 +327,20 @@ def _doubts(seen: Survey, best: CandidateGear) -> list[str]:
     """What the reader must know of the scan before he believes the file."""
     from gearwear.identify.survey import DOUBTFUL
 
-    said = [f"Note: {note}." for note in seen.notes]
+    said = [f"{NOTE}{note}." for note in seen.notes]
     pitch = 2.0 * math.pi * seen.tip_radius / seen.teeth
     if best.scatter > DOUBTFUL * pitch:
         said += [
-            f"Note: the flanks scatter by {1e3 * best.scatter:.0f} µm about the best of these, {100 * best.scatter / pitch:.1f} % of the pitch:",
+            f"{NOTE}the flanks scatter by {1e3 * best.scatter:.0f} µm about the best of these, {100 * best.scatter / pitch:.1f} % of the pitch:",
             "all teeth are worn, or another axis, tooth count or helix angle is the right one.",
         ]
     if seen.internal:
         said += [
-            "Note: a scan does not tell the cutter. None is written, and fillets and roots are no datum; cutter_teeth with",
+            f"{NOTE}a scan does not tell the cutter. None is written, and fillets and roots are no datum; cutter_teeth with",
             "cutter_tip_radius, or fillet_radius, of the drawing make them one.",
         ]
         if not seen.rim_diameter:
-            said.append("Note: the outside was not seen: rim_diameter, which a comparison needs, gives the ring a volume.")
+            said.append(f"{NOTE}the outside was not seen: rim_diameter, which a comparison needs, gives the ring a volume.")
     if not USUAL[0] < 2.0 * seen.tip_radius < USUAL[1]:
-        said.append(f"Note: {2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
+        said.append(f"{NOTE}{2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
     return said

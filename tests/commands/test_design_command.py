@@ -86,6 +86,16 @@ def test_the_bundled_scan_leads_to_its_design(capsys, tmp_path):
 
 
 @pytest.mark.long
+def test_a_doubt_of_the_file_stands_on_the_terminal_too(capsys, tmp_path):
+    """A spur gear of which somebody says that it leans by 15°."""
+    scan, out = tmp_path / "scan.xyz", tmp_path / "design.toml"
+    np.savetxt(scan, make_scan(Recipe(pose="none").of_size(20_000), seed=2).points, fmt="%.4f")
+    said = printed(capsys, scan, "--helix-angle", "15", "--out", out)
+    assert "! The flanks scatter by" in said and "helix angle is the right one." in " ".join(said.split())
+    assert "# Note: the flanks scatter by" in out.read_text(encoding="utf-8")
+    assert "!" not in printed(capsys, scan, "--out", out)
+
+
 def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
     file = tmp_path / "inches.xyz"
     made = make_scan(Recipe(gear=GearNumbers(20, 2.0, 10.0), noise_um=5.0, jitter=1.0).of_size(25_000), 1)
