@@ -85,7 +85,6 @@ def test_the_bundled_scan_leads_to_its_design(capsys, tmp_path):
     assert float(tip.split()[2]) == pytest.approx(18.0, abs=1.5)
 
 
-@pytest.mark.long
 def test_a_doubt_of_the_file_stands_on_the_terminal_too(capsys, tmp_path):
     """A spur gear of which somebody says that it leans by 15°."""
     scan, out = tmp_path / "scan.xyz", tmp_path / "design.toml"
@@ -96,6 +95,7 @@ def test_a_doubt_of_the_file_stands_on_the_terminal_too(capsys, tmp_path):
     assert "!" not in printed(capsys, scan, "--out", out)
 
 
+@pytest.mark.long
 def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
     file = tmp_path / "inches.xyz"
     made = make_scan(Recipe(gear=GearNumbers(20, 2.0, 10.0), noise_um=5.0, jitter=1.0).of_size(25_000), 1)
