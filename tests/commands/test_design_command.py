@@ -5,12 +5,13 @@ import sys
 import tomllib
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from gearwear.cli import main as cli
-from gearwear.commands.design import _tips, main
+from gearwear.commands.design import _doubts, _tips, _warned, main
 from gearwear.design import Gear, GearSpec, parse_design, read_design
 from gearwear.identify.candidates import SurfaceLeft
 from tests.synthetic import GearNumbers, Recipe, make_scan
@@ -85,14 +86,16 @@ def test_the_bundled_scan_leads_to_its_design(capsys, tmp_path):
     assert float(tip.split()[2]) == pytest.approx(18.0, abs=1.5)
 
 
-def test_a_doubt_of_the_file_stands_on_the_terminal_too(capsys, tmp_path):
-    """A spur gear of which somebody says that it leans by 15°."""
-    scan, out = tmp_path / "scan.xyz", tmp_path / "design.toml"
-    np.savetxt(scan, make_scan(Recipe(pose="none").of_size(20_000), seed=2).points, fmt="%.4f")
-    said = printed(capsys, scan, "--helix-angle", "15", "--out", out)
-    assert "! The flanks scatter by" in said and "helix angle is the right one." in " ".join(said.split())
-    assert "# Note: the flanks scatter by" in out.read_text(encoding="utf-8")
-    assert "!" not in printed(capsys, scan, "--out", out)
+def test_a_doubt_of_the_file_stands_on_the_terminal_too():
+    """A helix angle of the wrong hand: flanks off by up to a millimetre."""
+    seen = SimpleNamespace(notes=("a view is missing",), tip_radius=40.0, teeth=30, internal=False)
+    said = _warned(_doubts(seen, SimpleNamespace(scatter=0.97)))
+    assert said[0] == "! A view is missing." and said[1].startswith("! The flanks scatter by 970 µm about the best of these")
+    assert max(map(len, said)) <= 80 and " ".join(said).endswith("helix angle is the right one.")
+    assert (
+        _warned(_doubts(SimpleNamespace(notes=(), tip_radius=40.0, teeth=30, internal=False), SimpleNamespace(scatter=0.01)))
+        == []
+    )
 
 
 @pytest.mark.long
