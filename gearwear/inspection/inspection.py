@@ -143,6 +143,8 @@ class Inspection(Card):
 
 RING = "A ring: no span fits."
 """What is not inspected on a ring."""
+NO_CLASS = "no class"
+"""How the note ends that says why nothing is graded."""
 PITCH_ABOUT = "Pitch, index and runout are about"
 """How the note begins that says which axis."""
 
@@ -324,7 +326,7 @@ def _is_graded(gear: Gear, settings: Settings, notes: list[str]) -> bool:
     try:
         check_validity(size, settings.edition)
     except InputError as error:
-        notes.append(f"{error}: no class is given")
+        notes.append(f"{error}: {NO_CLASS}")
         return False
     if settings.required_class is not None:
         tolerances(size, settings.required_class, settings.edition)

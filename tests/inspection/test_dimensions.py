@@ -19,7 +19,7 @@ from gearwear.errors import InputError
 from gearwear.inspection import Settings, inspect
 from gearwear.inspection.dimensions import chordal, constant_chord, measured_over_pins, measured_span, over_pins, span
 from gearwear.inspection.estimate import Estimate
-from gearwear.report.files.inspection import dimension_lines
+from gearwear.report.files.inspection import dimension_lines, lines
 from tests.inspection.synthetic import displaced, flanks
 
 
@@ -258,3 +258,11 @@ def test_the_gauge_of_the_drawing_is_measured_and_judged():
     assert found.dimensions.drawn(gear)[1] == "kept"
     assert inspect(locate(points.position, gear, workers=1), gear, Settings(span_teeth=4)).dimensions.drawn(gear) is not None
     assert f"limits of the pins {pin.length - 0.01:.3f} … {pin.length + 0.01:.3f} mm: kept" in dimension_lines(found)
+
+
+def test_why_nothing_is_graded_stands_under_the_table():
+    gear = Gear.from_spec(GearSpec("gear", 19, 0.28, 1.0))
+    found = inspect(flanks(gear, 40, 12), gear)
+    said = [text for text, _ in lines(found, "a dental pinion")]
+    assert "ISO 1328-1:2013: module 0.28 mm is outside its range, 0.5 to 70 mm: no class" in said
+    assert max(map(len, said)) <= 80

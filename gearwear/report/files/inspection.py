@@ -19,7 +19,7 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import Loop
 from gearwear.inspection.estimate import RESOLVABLE_SHARE
 from gearwear.inspection.grading import Finding, Verdict
-from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.inspection import NO_CLASS, Inspection
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.placing.registration import Registration
@@ -227,14 +227,15 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     whole = inspection.iso_class
     if whole is not None and settings.required_class is None:
         said.append((f"class of the gear: {whole}", "bold"))
-    said += [(text, "dim") for text in _legend({finding.grade.verdict for finding in inspection.findings})]
+    said += [(text, "dim") for text in _legend(inspection)]
     return said + [(text, "yellow") for text in _warned(doubts, 2 if inspection.settings.k_bands is None else 1)]
 
 
-def _legend(found: set[Verdict]) -> list[str]:
-    """What the short verdicts mean, on one line."""
+def _legend(inspection: Inspection) -> list[str]:
+    """What the short verdicts mean, or why there are none, on one line."""
+    found = {finding.grade.verdict for finding in inspection.findings}
     if Verdict.NOT_RESOLVABLE not in found:
-        return []
+        return [note for note in inspection.notes if note.endswith(NO_CLASS)]
     share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
     if Verdict.NEITHER in found:
         return [f"n.r.: U over {share} of the tolerance; ≤: class met; unproven: it lies within U"]
