@@ -119,7 +119,7 @@ def test_limits_of_the_volume_hold_its_own_95_percent():
         and "on flanks that stand out it is 90.80 ± 0.51 mm³" in said
     )
     assert key_figures(results)[0].value.replace("\u202f", " ") == "1.8 to 92 mm³"
-    assert key_figures(results)[0].note.replace("\u202f", " ").startswith("90.80 ± 0.51 mm³ of it from ")
+    assert key_figures(results)[0].note.replace("\u202f", " ").startswith("90.80 ± 0.51 mm³ stands out; worn or made so")
     # Of a side that is worn throughout it is all that is likely to be gone.
     results = changed(results, "measured.loop.worn_sides", frozenset({Side.LEFT}))
     assert "the likeliest is 90.80 ± 0.51 mm³" in verdict(results).replace("\u202f", " ").replace("\u00a0", " ")

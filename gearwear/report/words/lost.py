@@ -84,7 +84,7 @@ def where_lost(results: Results) -> str:
     where = which_flanks(regions, results.wear.found, "seen")  # room is short beside a number
     beside = _too_faint(results)
     if _beyond(results):
-        where, beside = f"{_with_own_std(results)} of it from {where}", why.removeprefix("; ")
+        where, beside = f"{_with_own_std(results)} stands out", why.removeprefix("; ")
     elif open_:
         beside = f"{_limits(results)} are not excluded{why}"
         if _wide(results):
