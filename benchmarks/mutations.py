@@ -195,6 +195,10 @@ MUTATIONS = [
         ("diagnose/worn_flanks.py", " - (self.base.shape[1] + 0.5 * self.wide**2) / self.wide", "", "diagnose/core/test_worn_flanks.py"),
         ("diagnose/worn_flanks.py", "without.cost - rules().close", "math.inf", "diagnose/core/test_worn_flanks.py"),
         ("diagnose/worn_flanks.py", "any_of_them, 2.0 * _shape_price()", "any_of_them, any_of_them", "diagnose/core/test_worn_flanks.py"),
+        ("diagnose/rules.py", "    least_held: float = rule(\n        0.01", "    least_held: float = rule(\n        -0.01", "diagnose/core/test_no_datum.py"),
+        ("diagnose/no_datum.py", "+ max(beyond, 0.0) -", "-", "diagnose/core/test_no_datum.py comparison/test_flanks_alone.py"),
+        ("diagnose/masks.py", "only.sum() == 1", "False", "comparison/test_flanks_alone.py"),
+        ("comparison/open_volume.py", "(Open.BARE, max(self.bare_or_worn - above, 0.0))", "(Open.BARE, 0.0)", "comparison/test_flanks_alone.py"),
         ("diagnose/loop.py", "if _still_in(plain, low)", "if False", "diagnose/core/test_worn_flanks.py"),
         # fleet
         ("fleet/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),

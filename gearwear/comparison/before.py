@@ -14,6 +14,7 @@ from gearwear.comparison.measured_gear import MeasuredGear, laid, register
 from gearwear.comparison.same_teeth import SameTeeth, same_teeth
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
+from gearwear.diagnose.no_datum import leaves_a_datum
 from gearwear.diagnose.rules import rules
 from gearwear.errors import InputError
 from gearwear.placing.cells import Cells
@@ -61,6 +62,10 @@ def told_by_both(after: MeasuredGear, unworn: MeasuredGear) -> tuple[MeasuredGea
     for _ in range(MOST_ROUNDS):
         if after.loop is None or sides == after.worn_sides:
             break
+        if not leaves_a_datum(
+            after.first, after.context, sides
+        ):  # where it stands they tell themselves, and what they lost both scans
+            return replace(after, loop=replace(after.loop, made=None, no_datum=frozenset())), sides
         after = find_effects(after, sides)
         sides = sides_that_changed(after, unworn)
     if after.loop is None:

@@ -18,9 +18,10 @@ from gearwear.design.side import Side, sides_given
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.loop import Loop, close_loop
+from gearwear.diagnose.no_datum import BESIDE, leaves_a_datum
 from gearwear.diagnose.pooled import carried, left_out, loop_grid, rough_grid
 from gearwear.diagnose.space_waves import SpaceWave
-from gearwear.errors import check_kind
+from gearwear.errors import InputError, check_kind
 from gearwear.placing.cells import CellGrid, Cells, bin_points, cells_of, noise
 from gearwear.placing.sums import CellSums
 from gearwear.scan.reading import read_scan
@@ -90,10 +91,15 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     Raises
     ------
     InputError
-        If `measured` or `worn` is something else.
+        If `measured` or `worn` is something else, or the scan has nothing else than the flanks of these sides to be held by.
     """
     check_kind(measured, MeasuredGear, "measured", "what gw.register returns")
     worn = None if worn is None else sides_given(worn, "worn")
+    if worn and not leaves_a_datum(measured.first, measured.context, worn - {face.side for face in measured.context.faces}):
+        which = " and ".join(map(str, sorted(worn, reverse=True)))
+        raise InputError(
+            f"worn: without the {which} flanks nothing was seen that holds the gear; a scan with {BESIDE} would be right"
+        )
     scan = _Scan(measured, measured.first, measured.placed.located, worn=worn)
     look = scan.looked_at()
     if look is not None:

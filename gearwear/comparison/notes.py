@@ -24,6 +24,7 @@ from gearwear.diagnose.effects import named_effects
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.effects.pitch import EFFECT as PITCH
 from gearwear.diagnose.found import Loop
+from gearwear.diagnose.no_datum import BESIDE
 from gearwear.loaded.study import load_left_out
 from gearwear.placing.datum import LOW, Datum, bends_otherwise, taken_for_unworn
 from gearwear.wear.regions import UNIT, Wear
@@ -193,6 +194,12 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
             f"the {which} flanks may be worn throughout, or all made so: the scan cannot tell"
             if sides
             else "what the worn flanks have in common may be how they were made: the scan cannot tell"
+        )
+    if loop.no_datum and not before:
+        which = " and ".join(str(side) for side in sorted(loop.no_datum, reverse=True))
+        notes.append(
+            f"without the {which} flanks nothing holds the gear: what all of them have in common, whatever it is named, may be how they were made or what they"
+            f" lost; scan {BESIDE} with them"
         )
     notes += [
         f"a burr of {significant(burr.volume, 2)} ± {significant(burr.std, 1)} mm³ stands on the tips of the {burr.side} flanks: it is not taken off what they lost"

@@ -7,11 +7,14 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
+import numpy as np
+
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
+from gearwear.diagnose.no_datum import most_lost
 from gearwear.wear.limits import common_loss, even_depth, even_part
 from gearwear.wear.regions import Wear, WearRegion
 
@@ -30,6 +33,7 @@ class Open(StrEnum):
     FAINT = "wear shallower than the limits of detection of its flanks"
     UNSURE = "flanks of sides that look worn throughout: how high they stood as made is not known well enough"
     FORM = "a form that all teeth have and no effect explains: cut or worn, the scan does not tell"
+    BARE = "flanks of which all have a form, and without which the scan has nothing that holds the gear: cut or worn, it does not tell"
     THIN = "teeth thinner than drawn: cut so, or worn evenly, the scan does not tell"
     EVEN = "the same loss all over the flanks of a worn side: worn evenly, or cut thinner, the scan does not tell"
     TOLERANCE = "tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it"
@@ -96,15 +100,15 @@ class OpenVolume:
         """What leaves the volume open: a stated tolerance, an even loss; a scan that does not decide which sides are worn throughout, what each answer would
         be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 % interval, wear too faint to be
         found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all
-        teeth that nothing explains, teeth thinner than drawn, and what may be thicker teeth or a ridge at the pitch line."""
+        teeth that nothing explains, any form of flanks that are no datum, teeth thinner than drawn, and what may be thicker teeth or a ridge at the pitch line."""
         value, std = self.found.volume, self.found.volume_std
         causes = list[OpenPart]()
-        below = 0.0
+        below = above = 0.0
         if self.undecided:
             below = max(0.0, *(value - other + NORMAL_95 * its for other, its in self.undecided))
             above = max(0.0, *(other + NORMAL_95 * its - value for other, its in self.undecided))
             causes.append(OpenPart(Open.SIDES, below, above))
-        if self.layered > 0.0:  # another answer, and not one beside the others
+        if self.layered > 0.0:  # another answer, and not one beside the others; nor is a form of flanks that are no datum
             causes.append(OpenPart(Open.VIEWS, max(self.layered - below, 0.0), 0.0))
         if self.found.hidden_pits > 0.0:
             causes.append(OpenPart(Open.PITS, 0.0, self.found.hidden_pits))
@@ -113,7 +117,8 @@ class OpenVolume:
         if any(self.ridge_or_thick):
             causes.append(OpenPart(Open.RIDGE, *self.ridge_or_thick))
         for why, more in (
-            (Open.FAINT, self.too_faint), (Open.UNSURE, self.unsure_or_worn), (Open.FORM, self.form_or_wear), (Open.THIN, self.thin_or_worn),
+            (Open.FAINT, self.too_faint), (Open.UNSURE, self.unsure_or_worn), (Open.FORM, self.form_or_wear),
+            (Open.BARE, max(self.bare_or_worn - above, 0.0)), (Open.THIN, self.thin_or_worn),
         ):  # fmt: skip
             if more > 0.0:
                 causes.append(OpenPart(why, 0.0, more))
@@ -161,11 +166,25 @@ class OpenVolume:
         loop, grid = self.measured.loop, self.measured.cells.grid
         if loop is None or self.unworn_seen:
             return 0.0
-        lost = common_loss(self.found.side_maps, grid.sides(loop.without_a_name), grid.toothed, self.measured.worn_sides)
+        known = self.measured.worn_sides | loop.no_datum  # of these all that they share is open
+        lost = common_loss(self.found.side_maps, grid.sides(loop.without_a_name), grid.toothed, known)
         if lost <= self.found.volume_std:
             return 0.0
         # How high the sides stand that did not wear is known to that of their level.
         return lost + NORMAL_95 * self._side_area * max(loop.level_std)
+
+    @cached_property
+    def bare_or_worn(self) -> float:
+        """What all flanks of a side have in common that is no datum and may be worn throughout would come to were it wear, whatever name it has, mm³; 0 where
+        that is within the volume's standard deviation, and where a scan of the gear unworn shows what was made so."""
+        loop, cells = self.measured.loop, self.measured.cells
+        if loop is None or self.unworn_seen or not loop.no_datum:
+            return 0.0
+        grid, sheets = cells.grid, self.found.side_maps
+        depth = np.nan_to_num(most_lost(loop, cells)[[side.index for side in loop.no_datum]][:, grid.toothed])
+        lost = float((depth * sheets.area[sheets.fillet :]).sum()) * grid.gear.teeth
+        # How high the side stands as a whole has no part in it: that is a turn of the gear.
+        return lost if lost > self.found.volume_std else 0.0
 
     @property
     def unsure_or_worn(self) -> float:

@@ -181,6 +181,9 @@ class Loop(Card):
         Flanks that are no datum where every tooth has amounts of its own; None where each is.
     together : (m,) float or None
         What effects that take each other back do to the deviation of each cell together, beside the pose, mm; None where none do.
+    no_datum : frozenset of Side
+        Sides that may be worn throughout as far as the scan tells, and without whose flanks nothing holds the gear: what these have in common may be as they
+        were made, or lost (`no_datum`).
     """
 
     effects: tuple[FoundEffect, ...]
@@ -209,6 +212,7 @@ class Loop(Card):
     sides_ruled_out: frozenset[frozenset[Side]] = frozenset()
     untold: UntoldFlanks | None = None
     together: Floats | None = None
+    no_datum: frozenset[Side] = frozenset()
 
     @property
     def undecided(self) -> tuple[frozenset[Side], ...]:

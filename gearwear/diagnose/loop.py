@@ -29,6 +29,7 @@ from gearwear.diagnose.elimination import eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
 from gearwear.diagnose.masks import not_stray, sound_cells, whole_flanks, worn_mask
+from gearwear.diagnose.no_datum import HYPOTHESES, not_to_be_asked, or_worn, sides_seen, without_a_datum
 from gearwear.diagnose.of_the_part import left_in_the_part, of_the_form, or_of_the_form
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
@@ -172,6 +173,7 @@ def _closed(
         return _first_search(cells, noise, without, dictionary, always, out, apart, begun, waves)
 
     costs, ran = SideCosts({alone: 0.0}), context.ran
+    bare, unheld = without_a_datum(cells, context), NO_SIDE
     plain = searched_without(alone)
     low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
     if _still_in(plain, low):
@@ -182,26 +184,34 @@ def _closed(
         for face in context.faces:
             told |= (cells.points.surface <= FILLET) & face.worn(cells.points, cells.grid.row_height)
         others_alone = replace(plain.fit, cells=cells.without(told)) if told.any() else plain.fit
-        costs = side_costs(others_alone, plain.problem, plain.model, noise, ruled_out, look).beside(ran)
+        silent = not_to_be_asked(cells, bare)
+        if silent != HYPOTHESES:
+            costs = side_costs(others_alone, plain.problem, plain.model, noise, ruled_out | silent, look).beside(ran)
         costs = replace(costs, bends=sides_of(choose_datum(cells, noise).worn_side))
+        unheld = frozenset().union(*(bare & {*silent, costs.chosen, *costs.not_excluded})) & sides_seen(cells)
 
     def explained(sides: frozenset[Side]) -> Loop:
         loop = _explained(plain if sides == alone else searched_without(sides), noise, always, waves)
         return with_untold(replace(loop, worn_flanks=low if apart.any() else None), cells)
 
-    taken = explained(costs.chosen)
+    tenable = costs.without(bare)
+    taken = explained(tenable.chosen)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
     refuted = worn is None and not ran and _refuted(taken, cells, flanks)
+    if refuted and frozenset(Side) in bare:
+        refuted, unheld = False, frozenset(Side)
     if refuted:
         taken = explained(frozenset(Side))
+    unheld -= taken.worn_sides
 
     def finished() -> Loop:
-        others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
+        others = () if refuted else tuple(explained(sides) for sides in tenable.not_excluded)
         named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
+        named = or_worn(named, unheld, cells, taken.context)
         if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
             named = tuple(or_smoothing(effect) for effect in named)
-        whole = replace(taken, effects=named, others=others)
-        if refuted or apart.any():
+        whole = replace(taken, effects=named, others=others, no_datum=unheld)
+        if refuted or unheld or apart.any():
             return whole
         return replace(whole, sides_sure=costs.beyond_doubt, sides_ruled_out=costs.ruled_out)
 

@@ -116,11 +116,14 @@ def whole_flanks(cells: Cells, plain: Floats, worn: Bools, sound: Bools) -> Bool
 
 
 def _low_alike(cells: Cells, residual: Floats) -> Floats:
-    """By how much the typical left and the typical right side both lie low at the same place of the tooth, (m,) mm, not above 0."""
+    """By how much the typical left and the typical right side both lie low at the same place of the tooth, (m,) mm, not above 0; the only one that was seen."""
     sides = cells.grid.sides(np.where(cells.seen, residual, np.nan))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
         typical = np.nanmedian(sides, axis=0)
+    only = np.isfinite(typical).any(axis=(1, 2))
+    if only.sum() == 1:  # without the other side a turn moves all of one: how low it stands tells nothing
+        typical = np.broadcast_to(typical[only], typical.shape)
     low = np.minimum(np.nan_to_num(typical.max(axis=0)), 0.0)
     return cells.grid.on_cells(np.broadcast_to(low, sides.shape))
 

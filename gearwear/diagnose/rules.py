@@ -102,6 +102,13 @@ class Rules:
         "by how much other sides worn must cost more at a first look for that not to be asked again: it has chosen wrongly at 2 %",
         off=math.inf,
     )
+    least_held: float = rule(
+        0.01,
+        "1",
+        "derived: one flank in a hundred",
+        "share of what a scan tells of where the gear stands, which way it is told least, that must be left without flanks that look worn",
+        off=-math.inf,
+    )
     untold_flank: float = rule(
         0.1,
         "1",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from gearwear.design.side import Side
@@ -49,6 +49,10 @@ class SideCosts:
         if not ran:
             return self
         return replace(self, by_sides={worn: cost for worn, cost in self.by_sides.items() if not worn & ran})
+
+    def without(self, sides: Collection[frozenset[Side]]) -> SideCosts:
+        """Without some hypotheses, of which worn on no side is none."""
+        return replace(self, by_sides={worn: cost for worn, cost in self.by_sides.items() if worn not in sides})
 
     def _held_against(self, sides: frozenset[Side]) -> float:
         """What a hypothesis that is not chosen is held against: the cost of the one that is. Where no side is, but for forms of left and right apart, these are

@@ -16,6 +16,7 @@ MEASURED_OR_WORN = "whether the teeth were cut as thin as they were measured or 
 QUESTIONS = {
     Open.SIDES: (MADE_OR_WORN, "worn or made so"),
     Open.FORM: (MADE_OR_WORN, "worn or made so"),
+    Open.BARE: (MADE_OR_WORN, "worn or made so"),
     Open.THIN: (CUT_OR_WORN, "cut thinner or worn evenly"),
     Open.EVEN: (CUT_OR_WORN, "cut thinner or worn evenly"),
     Open.TOLERANCE: (
@@ -116,7 +117,7 @@ def _told_as(results: Results) -> tuple[str, str]:
     widest = results.open_volume.widest
     if widest is Open.UNSEEN:
         return "where it was seen it", "where seen"
-    if widest in (Open.SIDES, Open.FORM) and not results.measured.worn_sides:
+    if widest in (Open.SIDES, Open.FORM, Open.BARE) and not results.measured.worn_sides:
         return "on flanks that stand out it", "on flanks that stand out"
     return "the likeliest", "likeliest"
 
@@ -166,7 +167,7 @@ def _beyond(results: Results) -> bool:
     """Whether the volume's range is told in its place, and what is open of it may lie on other flanks than those that stand out."""
     widest, throughout = results.open_volume.widest, bool(results.measured.worn_sides)
     return _wide(results) and (
-        widest in (Open.THIN, Open.UNSURE, Open.PITS) or (widest in (Open.SIDES, Open.FORM) and not throughout)
+        widest in (Open.THIN, Open.UNSURE, Open.PITS) or (widest in (Open.SIDES, Open.FORM, Open.BARE) and not throughout)
     )
 
 
