@@ -32,6 +32,8 @@ FREE = {"parameters", "rejected"}
 
 NUMERICAL = {
     "PITCHES",
+    "PARTS",
+    "SEEN",
     "ALIKE",
     "BATCH",
     "BORDERS",
