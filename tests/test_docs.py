@@ -33,7 +33,6 @@ FREE = {"parameters", "rejected"}
 NUMERICAL = {
     "PITCHES",
     "PARTS",
-    "SEEN",
     "ALIKE",
     "BATCH",
     "BORDERS",

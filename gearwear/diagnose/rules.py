@@ -109,6 +109,13 @@ class Rules:
         "share of what a scan tells of where the gear stands, which way it is told least, that must be left without flanks that look worn",
         off=-math.inf,
     )
+    least_between: float = rule(
+        0.1,
+        "of the flank's roll",
+        "derived: reliefs leave an involute between them",
+        "how much of the flank a tip and a root relief must leave between them to be no sliding wear of both sides",
+        off=-math.inf,
+    )
     untold_flank: float = rule(
         0.1,
         "1",

@@ -7,7 +7,9 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from gearwear.design.side import Side
+from gearwear.diagnose.fit import Model
 from gearwear.diagnose.rules import rules
+from gearwear.diagnose.search import Problem
 
 NO_SIDE: frozenset[Side] = frozenset()
 
@@ -90,3 +92,12 @@ class SideCosts:
             return cost - (more if worn == both else 0.0) - self._held_against(worn)
 
         return tuple(worn for worn, cost in self.by_sides.items() if worn != taken and above(worn, cost) < rules().close)
+
+
+def by_reliefs(model: Model, problem: Problem) -> float:
+    """How uncommon, in cost, a model's tip and root relief are as they were cut: beyond all measure where they leave hardly anything of the flanks between them, as a
+    mate that slides does; else 0."""
+    gear = problem.context.gear
+    tip, root = ([one.shape[0] for one in model if one.name == f"{end}_relief"] for end in ("tip", "root"))
+    least = rules().least_between * abs(gear.tip_roll - gear.form_roll)
+    return math.inf if tip and root and gear.orientation * (tip[0] - root[0]) < least else 0.0

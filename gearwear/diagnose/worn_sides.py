@@ -47,7 +47,7 @@ from gearwear.diagnose.pitch_point import as_slid, likeliest
 from gearwear.diagnose.robust_fit import SETTLED, Robust, Shares, robust_fit
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Around, Problem, exchange, free_penalty
-from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
+from gearwear.diagnose.side_costs import NO_SIDE, SideCosts, by_reliefs
 from gearwear.processors import each
 
 REMEMBERED = 8
@@ -120,7 +120,7 @@ def side_costs(
         for sides, least in there.tenable(model, lost, apart.cost < made, unworn, beside).items():
             if sides not in tenable or least.cost + paid < tenable[sides].cost:
                 tenable[sides], pitch[sides] = replace(least, cost=least.cost + paid), roll
-    uncommon = tenable[frozenset(Side)].uncommon if frozenset(Side) in tenable else 0.0
+    uncommon = max(tenable[frozenset(Side)].uncommon, by_reliefs(model, problem)) if frozenset(Side) in tenable else 0.0
     return SideCosts({NO_SIDE: unworn} | {sides: least.cost for sides, least in tenable.items()}, made, uncommon, pitch)
 
 

@@ -13,16 +13,18 @@ from gearwear.design.side import Side
 from gearwear.design.surface import END_HIGH, END_LOW, FLANK, locate
 from gearwear.diagnose.columns import cuts_of
 from gearwear.diagnose.covariance import CellCovariance
-from gearwear.diagnose.dictionary import build_dictionary
+from gearwear.diagnose.dictionary import Candidate, build_dictionary
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.face_width import EFFECT as FACE_WIDTH
+from gearwear.diagnose.effects.root_relief import EFFECT as ROOT_RELIEF
 from gearwear.diagnose.effects.thickness_variation import EFFECT as THICKNESS_VARIATION
+from gearwear.diagnose.effects.tip_relief import EFFECT as TIP_RELIEF
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.flank_columns import loss_by_tooth, wear_columns
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.masks import not_stray
 from gearwear.diagnose.pitch_point import as_slid
-from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
+from gearwear.diagnose.side_costs import NO_SIDE, SideCosts, by_reliefs
 from gearwear.diagnose.worn_sides import _Loss, _Scan
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.diagnose.plain import PLAIN, PLAIN_AND_ALL
@@ -350,3 +352,17 @@ def test_forms_of_left_and_right_cost_what_their_difference_is_rare(flank_class,
     assert scan.forms_apart(np.where(left, 0.5, -0.5) * by_turns) == pytest.approx(rare, rel=1e-3)
     assert scan.forms_apart(by_turns) == pytest.approx(0.0, abs=1e-9)
     assert scan.forms_apart(np.where(left, 0.002 * roll, 0.0)) < 0.05 * rare
+
+
+@pytest.mark.parametrize(
+    ("tip", "root", "meet"), [(14.0, 14.0, True), (14.0, 14.9, True), (16.3, 14.0, True), (16.5, 14.0, False)]
+)
+def test_reliefs_that_leave_nothing_between_them_are_never_cut(tip, root, meet):
+    """The flank of the pinion has 23.5 mm of roll, a tenth of which reliefs leave between them; both sides worn are not excluded however well they fit."""
+    assert 23.4 < PINION.tip_roll - PINION.form_roll < 23.6
+    model = (Candidate(TIP_RELIEF, (tip,), np.array([0])), Candidate(ROOT_RELIEF, (root,), np.array([1])))
+    problem = SimpleNamespace(context=SimpleNamespace(gear=PINION))
+    uncommon = by_reliefs(model, problem)
+    assert uncommon == (np.inf if meet else 0.0) and by_reliefs(model[:1], problem) == by_reliefs(model[1:], problem) == 0.0
+    costs = SideCosts({NO_SIDE: 100.0, RIGHT: 111.0, BOTH: 110.0}, 100.0, uncommon)
+    assert costs.chosen == NO_SIDE and costs.not_excluded == ((BOTH,) if meet else ())
