@@ -45,7 +45,7 @@ MUTATIONS = [
     Mutation(*row)
     for row in (
         ("report/words/other_design.py", "THICKER = 0.07", "THICKER = 0.04", "report/test_words.py"),
-        ("placing/refusal.py", "/ gear.reference_radius * gear.base_helix_cosine / math", "* gear.base_helix_cosine / math", "placing/test_refusal.py"),
+        ("design/twist.py", "arc * gear.base_radius / gear.reference_radius", "arc", "placing/test_refusal.py"),
         # scans the wrong way round
         ("comparison/notes.py", "<= GROWN * math.hypot", "> GROWN * math.hypot", "comparison/test_before.py"),
         ("comparison/before.py", "changed.with_deviation(-changed", "changed.with_deviation(changed", "comparison/test_before.py"),

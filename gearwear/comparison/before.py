@@ -99,17 +99,18 @@ def sides_that_changed(after: MeasuredGear, unworn: MeasuredGear) -> frozenset[S
     return frozenset(sides)
 
 
-def grown_since(after: MeasuredGear, unworn: MeasuredGear, scatter: float) -> Wear:
+def grown_since(after: MeasuredGear, unworn: MeasuredGear, changed: Cells, scatter: float) -> Wear:
     """Where the later scan has more metal than that of the gear before wear, as if it were worn there the other way round.
 
     Parameters
     ----------
     after, unworn : MeasuredGear
         Of the worn gear, and of the same before.
+    changed : Cells
+        `what_changed` from one to the other.
     scatter : float
-        Of what changed, mm.
+        Of that, mm.
     """
-    changed = what_changed(after, unworn)
     sides = sides_that_changed(unworn, after)
     return find_wear(
         changed.with_deviation(-changed.points.deviation), scatter, sides, after.loop, limits=False, gone=after.gone | unworn.gone

@@ -10,10 +10,10 @@ from functools import cached_property
 import numpy as np
 
 from gearwear.comparison.measured_gear import MeasuredGear
-from gearwear.design.gear import Gear
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
+from gearwear.design.twist import normal_loss
 from gearwear.diagnose.no_datum import most_lost
 from gearwear.wear.limits import common_loss, even_depth, even_part
 from gearwear.wear.regions import Wear, WearRegion
@@ -286,9 +286,3 @@ def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:
         return None
     area = sum(region.area for region in wear.regions if region.side in level_open(measured))
     return normal_loss(measured.gear, tolerance) * area
-
-
-def normal_loss(gear: Gear, arc: float) -> float:
-    """What both flanks of a tooth together have lost along their normals, mm, that is thinner by a normal `arc` (mm) at the reference circle: ``arc r_b / r · cos β_b / cos β``."""
-    per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)
-    return arc * gear.base_radius / gear.reference_radius * per_arc

@@ -201,7 +201,7 @@ class Scanned:
     @property
     def grown(self) -> Wear | None:
         """Where the scan has more metal than that before wear; None without one."""
-        return None if self.unworn is None else grown_since(self.measured, self.unworn, self.scatter)
+        return None if self.unworn is None else grown_since(self.measured, self.unworn, self.as_made, self.scatter)
 
     @property
     def as_made_points(self) -> SurfacePoints:

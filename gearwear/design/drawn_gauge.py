@@ -141,13 +141,17 @@ def shift_instead(spec: GearSpec) -> str:
     """That the thinning by a drawn gauge is rather another profile shift; nothing where it is a usual one."""
     if spec.gauge is None or _is_usual(spec.thinning, spec):
         return ""
-    slope = 2.0 * spec.normal_module * math.tan(spec.normal_pressure_angle)
-    right = f"{spec.profile_shift - spec.thinning / slope:.3f}".replace("-", "−")
+    right = f"{shift_of(spec, -spec.thinning):.3f}".replace("-", "−")
     stated = f"{spec.profile_shift:.6g}".replace("-", "−")
     return (
         f"the {spec.name}'s {spec.gauge.words} means teeth {abs(spec.thinning):.3f} mm {'thinner' if spec.thinning > 0.0 else 'thicker'} than profile_shift = "
         f"{stated} makes them; is it a profile shift of {right}? Tip and root would lie elsewhere"
     )
+
+
+def shift_of(spec: GearSpec, thicker: float) -> float:
+    """The profile shift that makes teeth thicker by so much (mm of normal arc at the reference circle): by 2 Δx m_n tan α_n."""
+    return spec.profile_shift + thicker / (2.0 * spec.normal_module * math.tan(spec.normal_pressure_angle))
 
 
 def _is_usual(thinning: float, spec: GearSpec) -> bool:

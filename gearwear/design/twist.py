@@ -179,3 +179,9 @@ def refuse(gear: Gear, task: str, *kinds: Toothing) -> None:
         so, value, right = words[kind]
         if so:
             raise InputError(f"[{spec.name}] {value}: {task} of {kind} gears is out of scope for now; only {right}")
+
+
+def normal_loss(gear: Gear, arc: float) -> float:
+    """What both flanks of a tooth together have lost along their normals, mm, that is thinner by a normal `arc` (mm) at the reference circle: ``arc r_b / r · cos β_b / cos β``."""
+    per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)
+    return arc * gear.base_radius / gear.reference_radius * per_arc

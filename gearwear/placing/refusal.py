@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
-from gearwear.design.twist import drawn_height, helix_words, segments, untwisted
+from gearwear.design.twist import drawn_height, helix_words, normal_loss, segments, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.screw import fine_sample, normal_twist
 from gearwear.placing.views import PlacedScan
@@ -384,14 +384,12 @@ def seen_radii(placed: PlacedScan, gear: Gear) -> SeenRadii:
 def thicker_by(points: SurfacePoints, gear: Gear) -> float:
     """By how much teeth are thicker than the design's, mm of normal arc at the reference circle; nan where a side was hardly seen.
 
-    The median of each side's points counts, both together: the pose may give one side what it takes off the other. Along the normal in space it is
-    ``arc r_b / r · cos β_b / cos β``.
+    The median of each side's points counts, both together: the pose may give one side what it takes off the other.
     """
     off = [points.deviation[(points.surface == FLANK) & (points.side == side)] for side in (1, -1)]
     if min(map(len, off)) < LEAST_FLANK:
         return math.nan
-    per_arc = gear.base_radius / gear.reference_radius * gear.base_helix_cosine / math.cos(gear.helix_angle)
-    return float(sum(np.median(side) for side in off)) / per_arc
+    return float(sum(np.median(side) for side in off)) / normal_loss(gear, 1.0)
 
 
 def width_seen(points: Floats, gear: Gear) -> float:

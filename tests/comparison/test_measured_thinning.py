@@ -9,8 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from gearwear.comparison.open_volume import OpenVolume, normal_loss
+from gearwear.comparison.open_volume import OpenVolume
 from gearwear.design import Gear, GearSpec, read_design
+from gearwear.design.twist import normal_loss
 from gearwear.report.words.verdict import key_figures, verdict
 from tests.commands.doors import run, scan_file, strict_json
 from tests.report.fake import changed, fake_results

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from gearwear.design.drawn_gauge import shift_of
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import SPACE, listed, number, significant
 from gearwear.diagnose.found import FoundEffect
@@ -55,7 +56,7 @@ def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0, scale: floa
         )
         return f"{text} and the design's {_diameter(gear.base_radius)}; check module and pressure angle"
     module = gear.spec.normal_module
-    base, tip = seen.base / gear.base_radius - 1.0 - scale, seen.tip / gear.tip_radius - 1.0 - scale
+    base, tip = _off(gear, seen, scale)
     far = min(abs(base), abs(tip)) > MODULE_OFF and abs(base) * flank > LEAST_RISE and abs(tip) * gear.tip_radius > RIM_OFF_MM
     if far and abs(base - tip) < MODULE_ALIKE * max(abs(base), abs(tip)):
         both = 0.5 * (base + tip)
@@ -74,7 +75,7 @@ def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0, scale: floa
             f"check profile_shift ({number(gear.spec.profile_shift, 2)} in the design)"
         )
     if seen.thicker > max(THICKER * module, 2.0 * (gear.tolerance.thickness or 0.0)):
-        shift = gear.spec.profile_shift + seen.thicker / (2.0 * module * math.tan(gear.normal_pressure_angle))
+        shift = shift_of(gear.spec, seen.thicker)
         return (
             f"the teeth are {number(seen.thicker, 2)}{SPACE}mm thicker than drawn, as those of a profile shift of {number(shift, 2)} would be; check profile_shift "
             f"({number(gear.spec.profile_shift, 2)} in the design) and thinning"
@@ -115,7 +116,7 @@ def other_angles(gear: Gear, seen: SeenRadii, effects: Sequence[FoundEffect], sc
     except InputError:  # larger or smaller than the standard's gears
         return []
     said, flank = [], abs(gear.tip_roll - gear.form_roll)
-    base, tip = seen.base / gear.base_radius - 1.0 - scale, seen.tip / gear.tip_radius - 1.0 - scale
+    base, tip = _off(gear, seen, scale)
     if abs(base) * flank > most.profile_slope and abs(tip) < 0.5 * abs(base) and seen.base < gear.reference_radius:
         transverse = math.acos(seen.base / gear.reference_radius)
         angle = math.atan(math.tan(transverse) * math.cos(gear.helix_angle))
@@ -133,6 +134,11 @@ def other_angles(gear: Gear, seen: SeenRadii, effects: Sequence[FoundEffect], sc
             "slope of any class; check helix_angle"
         )
     return said
+
+
+def _off(gear: Gear, seen: SeenRadii, scale: float) -> tuple[float, float]:
+    """Relative difference of the flanks' base circle and of the tip circle from the design's, beside the scan's `scale`."""
+    return seen.base / gear.base_radius - 1.0 - scale, seen.tip / gear.tip_radius - 1.0 - scale
 
 
 def _degrees(angle: float) -> str:
