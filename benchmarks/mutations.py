@@ -63,7 +63,7 @@ MUTATIONS = [
         # thickness by a span or over pins
         ("design/drawn_gauge.py", "USUAL_THINNING = (-0.02, 0.1)", "USUAL_THINNING = (-0.2, 0.1)", "design/test_drawn_gauge.py"),
         ("design/drawn_gauge.py", "math.acos(base / centre)) - self.pin", "math.acos(base / centre)) + self.pin", "design/test_drawn_gauge.py"),
-        ("design/drawn_gauge.py", "(low > self.high).any() or ", "", "design/test_drawn_gauge.py"),
+        ("design/drawn_gauge.py", "conformity(low, high, self.high), ", "", "design/test_drawn_gauge.py"),
         ("design/drawn_gauge.py", "(2.0 * base * lean)", "(2.0 * base)", "design/test_drawn_gauge.py"),
         # tooth 1 by a mark; grades of radial composite deviations; rounded ends
         ("placing/mark.py", "OTHER_PLACES = 0.25", "OTHER_PLACES = 2.5", "placing/test_mark.py"),
@@ -204,8 +204,8 @@ MUTATIONS = [
         ("comparison/open_volume.py", "(Open.BARE, max(self.bare_or_worn - above, 0.0))", "(Open.BARE, 0.0)", "comparison/test_flanks_alone.py"),
         ("diagnose/loop.py", "if _still_in(plain, low)", "if False", "diagnose/core/test_worn_flanks.py"),
         # fleet
-        ("fleet/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),
-        ("fleet/conformity.py", "if most <= limit", "if least <= limit", "fleet/test_conformity.py"),
+        ("design/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),
+        ("design/conformity.py", "if most <= limit", "if least <= limit", "fleet/test_conformity.py"),
         ("fleet/quantities.py", "HIDDEN = 2.0", "HIDDEN = 1.0", "fleet/test_quantities.py"),
         ("fleet/quantities.py", "NOT_SEEN = 0.25", "NOT_SEEN = 0.3", "fleet/test_doubts.py"),
         ("fleet/quantities.py", "SILENT = 0.1", "SILENT = 0.2", "fleet/test_doubts.py"),

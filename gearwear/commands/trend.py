@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> int:
-    from gearwear.fleet.conformity import Conformity, exit_status
+    from gearwear.design.conformity import Conformity, exit_status
     from gearwear.fleet.pages import trend_page
     from gearwear.fleet.reading import read_fleet, trends
     from gearwear.fleet.results import POINT_COLUMNS, TREND_COLUMNS, point_rows, trend_rows

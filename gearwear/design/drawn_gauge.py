@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.conformity import Conformity, conformity, worst
 from gearwear.design.involute import involute_function
 from gearwear.design.quantity import as_given, outside
 from gearwear.design.standards import MM_PER_INCH
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 USUAL_THINNING = (-0.02, 0.1)
 """Modules by which teeth are cut thinner for backlash; what lies outside of it is rather another profile shift."""
+
+KEPT = {Conformity.CONFORMING: "kept", Conformity.NOT_CONFORMING: "not kept", Conformity.NEITHER: "neither proven"}
+"""Of the limits of a drawing, in words."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,13 +66,15 @@ class DrawnGauge:
             "kept" where all lie within the limits with their U, "not kept" where one lies outside by more than that, else "neither proven"; "" where
             the drawing has one value, or nothing was seen.
         """
-        seen = np.isfinite(values + expanded)
-        low, high = (values - expanded)[seen], (values + expanded)[seen]
-        if self.low == self.high or not seen.any():
+        if self.low == self.high:
             return ""
-        if (low > self.high).any() or (high < self.low).any():
-            return "not kept"
-        return "kept" if (low >= self.low).all() and (high <= self.high).all() else "neither proven"
+        seen = np.isfinite(values + expanded)
+        state = worst(
+            each
+            for low, high in zip((values - expanded)[seen].tolist(), (values + expanded)[seen].tolist(), strict=True)
+            for each in (conformity(low, high, self.high), conformity(-high, -low, -self.low))
+        )
+        return "" if state is None else KEPT[state]
 
     def thinning(self, spec: GearSpec) -> tuple[float, float]:
         """Thinning that the drawing means, and half of what its limits leave of it.

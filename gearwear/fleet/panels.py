@@ -10,7 +10,7 @@ from functools import partial
 
 from markupsafe import Markup
 
-from gearwear.fleet.conformity import COVERAGE, Conformity
+from gearwear.design.conformity import COVERAGE, Conformity
 from gearwear.fleet.gauge import Repeat, Scatter
 from gearwear.fleet.trend import CYCLES, DAYS, GearTrend, Point, Trend
 

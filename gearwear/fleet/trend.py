@@ -10,8 +10,8 @@ from itertools import compress, pairwise
 
 import numpy as np
 
+from gearwear.design.conformity import COVERAGE, GOOD_TO_BAD, Conformity, conformity, worst
 from gearwear.design.quantity import NORMAL_95, significant
-from gearwear.fleet.conformity import COVERAGE, GOOD_TO_BAD, Conformity, conformity, worst
 from gearwear.fleet.doubts import DOUBTED, NO_DOUBTS, Doubts, together
 from gearwear.fleet.line import FittedLine, Reach, beyond, chance_of, fit_line, interval, line_from_new, own_range, reaches
 from gearwear.fleet.order import Occasion, Order, order_of

@@ -6,8 +6,8 @@ import math
 import textwrap
 from collections.abc import Sequence
 
+from gearwear.design.conformity import Conformity
 from gearwear.design.quantity import NORMAL_95, SPACE, counted, listed, sentence, significant, unbroken
-from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.gauge import Accord, GaugeStudy, Scatter
 from gearwear.fleet.labels import left_words, rate_words, shown, title_of, unit_of
 from gearwear.fleet.outcome import State

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
+from gearwear.design.conformity import Conformity, conformity
 from gearwear.design.side import Side
 from gearwear.inspection.estimate import RESOLVABLE_SHARE
 from gearwear.inspection.radial import RADIAL_SYMBOLS
@@ -25,6 +26,10 @@ class Verdict(StrEnum):
     NOT_RESOLVABLE = "not resolvable"
     NOT_SEEN = "not seen"
     NO_TOLERANCE = "no tolerance"
+
+
+DECIDED = {Conformity.CONFORMING: Verdict.WITHIN, Conformity.NOT_CONFORMING: Verdict.EXCEEDS, Conformity.NEITHER: Verdict.NEITHER}
+"""What a required class says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,14 +173,7 @@ def graded(
     if not resolved and not abs(value) - expanded > limit:
         verdict = Verdict.NOT_RESOLVABLE
     elif required is not None:
-        verdict = _decided(abs(value), expanded, limit)
+        verdict = DECIDED[conformity(abs(value) - expanded, abs(value) + expanded - 1e-12, limit)]
     else:
         verdict = Verdict.COARSER if over else Verdict.GRADED
     return Grade(iso_class_found, resolvable[0] if resolvable else None, met, limit, verdict)
-
-
-def _decided(size: float, expanded: float, limit: float) -> Verdict:
-    """Whether a deviation (mm, without its sign) keeps the tolerance of a required class."""
-    if size + expanded <= limit + 1e-12:
-        return Verdict.WITHIN
-    return Verdict.EXCEEDS if size - expanded > limit else Verdict.NEITHER

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from gearwear.fleet.conformity import Conformity, conformity, exit_status, worst
+from gearwear.design.conformity import Conformity, conformity, exit_status, worst
 from gearwear.fleet.trend import Point
 
 YES, NO, NEITHER = Conformity.CONFORMING, Conformity.NOT_CONFORMING, Conformity.NEITHER

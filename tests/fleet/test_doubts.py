@@ -9,7 +9,7 @@ from datetime import datetime, timedelta
 
 import pytest
 
-from gearwear.fleet.conformity import Conformity
+from gearwear.design.conformity import Conformity
 from gearwear.fleet.doubts import Doubts
 from gearwear.fleet.quantities import DOUBT, GEAR, TOOTH, quantities
 from gearwear.fleet.trend import Reading, gear_trend, with_significance

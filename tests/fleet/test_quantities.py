@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from gearwear.design import Gear, GearSpec
-from gearwear.fleet.conformity import Conformity, conformity
+from gearwear.design.conformity import Conformity, conformity
 from gearwear.fleet.quantities import GEAR, TOOTH, quantities
 from tests.fleet.fleets import report
 

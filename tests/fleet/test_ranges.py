@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from gearwear.fleet.conformity import Conformity
+from gearwear.design.conformity import Conformity
 from gearwear.fleet.line import fit_line, line_from_new, reaches
 from gearwear.fleet.trend import Reading, gear_trend, points_of, with_significance
 from gearwear.fleet.words import gear_words, value_words

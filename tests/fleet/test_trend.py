@@ -9,7 +9,7 @@ from datetime import datetime, timedelta
 import numpy as np
 import pytest
 
-from gearwear.fleet.conformity import Conformity
+from gearwear.design.conformity import Conformity
 from gearwear.fleet.order import Occasion
 from gearwear.fleet.panels import scales_of, trend_panel
 from gearwear.fleet.significance import two_sided

@@ -82,7 +82,7 @@ def where_lost(results: Results) -> str:
     if not regions:
         beside = f"not excluded{why}" if open_ else ""
         return "; ".join(filter(None, (beside, "no region stands out", _too_faint(results))))
-    where = which_flanks(regions, results.wear.found, "seen")  # room is short beside a number
+    where = f"from {which_flanks(regions, results.wear.found, 'seen')}"  # room is short beside a number
     beside = _too_faint(results)
     if _beyond(results):
         where, beside = f"{_with_own_std(results)} stands out", why.removeprefix("; ")
@@ -91,7 +91,7 @@ def where_lost(results: Results) -> str:
         if _wide(results):
             beside = f"{_told_as(results)[1]} {_with_own_std(results)}{why}"
     worn_thin = f"up to {up_to} if worn evenly to the measured thinning" if (up_to := _up_to(results)) else ""
-    return "; ".join(filter(None, (where if _beyond(results) else f"from {where}", beside, worn_thin)))
+    return "; ".join(filter(None, (where, beside, worn_thin)))
 
 
 def may_be_none(results: Results) -> bool:
