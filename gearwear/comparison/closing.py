@@ -11,7 +11,7 @@ from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, Progress
 from gearwear.comparison.pass_limits import grid_of_sample
 from gearwear.comparison.passes import last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import beside_smoothing, beside_views
-from gearwear.comparison.relocated import FinalMotion, Relocation, clip_of, is_far, with_pits
+from gearwear.comparison.relocated import FinalMotion, Relocation, clip_of, in_cells, is_far
 from gearwear.comparison.which_gear import check_part
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_given
@@ -223,17 +223,18 @@ class _Scan:
         if result.streamed is None:
             return result
         final, noise = result.final, self.measured.noise
-        last = last_pass(result.streamed, final.cells, motion, clip_of(final.located), noise, result.straightened)
+        last = last_pass(result.streamed, final.cells, motion, clip_of(result.located), noise, result.straightened)
         return replace(result, final=replace(final, cells=last.cells, sections=last.sections))
 
     def _with(self, loop: Loop, again: Relocation | None) -> tuple[MeasuredGear, FinalMotion]:
         measured = self.measured
         motion, located = FinalMotion.of(measured.placed, loop, measured.gear, again)
-        cells = with_pits(located, self.grid) if measured.streamed is None else moved(self.cells, -loop.motion)
+        lying = in_cells(located, self.grid)
+        cells = lying.means()[0] if measured.streamed is None else moved(self.cells, -loop.motion)
         named = beside_views(loop, measured.placed, self.cells, measured.noise)
         context = measured.context.with_pitch(named.context.pitch)
         return replace(
-            measured, context=context, first=self.cells, loop=named, final=FinalPlace(located, motion.pose, cells)
+            measured, context=context, first=self.cells, loop=named, final=FinalPlace(lying, motion.pose, cells)
         ), motion
 
 

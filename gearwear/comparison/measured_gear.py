@@ -17,20 +17,21 @@ from gearwear.comparison.own_edges import on_its_ends, on_its_tips, on_tips_of
 from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.passes import Streamed, first_pass
 from gearwear.comparison.placed_notes import VIEWS_MAY_LIE_APART, doubts_of, said_of_scale, sample_note, smoothing_of
-from gearwear.comparison.relocated import LEAST_NOISE, clip_of, with_pits
+from gearwear.comparison.relocated import LEAST_NOISE, clip_of, in_cells
 from gearwear.comparison.stated import at_20_degrees, check_streamed, tooth_1_of, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
-from gearwear.design.surface import FLANK, OTHER, SURFACE_NAMES, SurfacePoints
+from gearwear.design.surface import OTHER, SURFACE_NAMES, SurfacePoints
 from gearwear.design.twist import Toothing, drawn_height, refuse
 from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.end_edge import EndEdge
+from gearwear.placing.in_cells import InCells
 from gearwear.placing.layers import how_far_apart, layers_apart, said_of_layers
 from gearwear.placing.low_tips import below_tips
 from gearwear.placing.mark import SeenMark
@@ -38,7 +39,6 @@ from gearwear.placing.pose import Pose
 from gearwear.placing.proportion import common_ratio
 from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
-from gearwear.placing.strays import near_centre
 from gearwear.placing.tip_edge import TipEdge
 from gearwear.placing.views import PlacedScan, turned
 from gearwear.scan.types import Scan
@@ -69,17 +69,17 @@ class FinalPlace:
 
     Parameters
     ----------
-    located : SurfacePoints
+    lying : InCells
         All used points.
     pose : Pose
         design = rotation · scan + translation.
     cells : Cells
         As measured.
     sections : SectionSums or None
-        Of a streamed scan: sums over all its points without what measurement added; `located` is its sample.
+        Of a streamed scan: sums over all its points without what measurement added; `lying` is its sample.
     """
 
-    located: SurfacePoints
+    lying: InCells
     pose: Pose
     cells: Cells
     sections: SectionSums | None = None
@@ -150,7 +150,7 @@ class MeasuredGear(Card):
     @property
     def located(self) -> SurfacePoints:
         """All used points in the final pose."""
-        return self.final.located
+        return self.final.lying.points
 
     @property
     def pose(self) -> Pose:
@@ -287,7 +287,7 @@ class MeasuredGear(Card):
     @property
     def flanks(self) -> SurfacePoints:
         """The points on flanks, without what measurement added and without strays."""
-        flank = self._without_strays(self.located)
+        flank = self.final.lying.flanks()
         return flank.with_deviation(self.straightened(flank))
 
     @property
@@ -301,7 +301,7 @@ class MeasuredGear(Card):
         if self.final.sections is not None:
             return self.final.sections
         cut = Cut(self.section_band, self.straightened)
-        return cut.of(self._without_strays(self.located, cut.holds(self.located)))
+        return cut.of(self.final.lying.flanks(cut.holds(self.located)))
 
     @property
     def raw_sections(self) -> SectionSums:
@@ -309,17 +309,11 @@ class MeasuredGear(Card):
         if self.streamed is not None:
             return self.streamed.first.sections
         band, located = self.section_band, self.placed.located
-        return SectionSums.of(self._without_strays(located, band.holds(located)), band)
+        return SectionSums.of(in_cells(located, self.cells.grid).flanks(band.holds(located)), band)
 
     def straightened(self, points: SurfacePoints) -> Floats:
         """Deviations without what measurement added, mm."""
         return points.deviation if self.loop is None else points.deviation - self.loop.deviation(points, MEASURED)
-
-    def _without_strays(self, located: SurfacePoints, among: Bools | None = None) -> SurfacePoints:
-        """Points of flanks; those `among` (n,) alone."""
-        grid = self.cells.grid
-        near = near_centre(located.deviation, grid.index(located), grid, clip_of(located)) & (located.surface == FLANK)
-        return located.take(near if among is None else near & among)
 
     @property
     def corrected(self) -> Cells:
@@ -445,7 +439,7 @@ def _in_cells(
     points = placed.measured
     fractures = find_fractures(points, gear, planar)
     border = with_borders(points, fractures, gear, placed.registration.noise)
-    broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
+    broken = measure_broken(points, grid.index(placed.located), fractures, border, grid, placed.registration.noise)
     broken = tuple(piece for piece in broken if not piece.seen or piece.volume > LEAST_BROKEN_STDS * piece.std)
     broken = tuple(piece for piece in broken if piece.tooth not in design.datum.ignore_teeth)
     border |= on_stumps(points, broken, grid)
@@ -454,7 +448,8 @@ def _in_cells(
     streamed = None
     if chunks is None:
         placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
-        first = with_pits(placed.located, grid)
+        lying = in_cells(placed.located, grid)
+        first = lying.means()[0]
     else:
         borders = Borders(grid, placed.registration.noise, tuple((tooth, points[index]) for tooth, index in fractures), broken)
         placed, streamed = first_pass(
@@ -466,7 +461,7 @@ def _in_cells(
             SectionBand.of(gear),
             no_datum(root) or unstated_root(design.gears[name]),
         )
-        first = streamed.first.cells
+        first, lying = streamed.first.cells, in_cells(placed.located, grid)
     context = _context(first, placed, design, name, planar)
     absent = frozenset(piece.tooth for piece in broken if piece.whole)
     stitched = design.scanner.stitched or len(scans) > 1
@@ -475,7 +470,7 @@ def _in_cells(
         context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent, views_apart=apart,
         turntable=design.scanner.turntable, stitched=stitched,
     )  # fmt: skip
-    final = FinalPlace(placed.located, placed.registration.pose, first)
+    final = FinalPlace(lying, placed.registration.pose, first)
     return MeasuredGear(
         design=design, scans=scans, part=name, root=root, tip_edge=edges[0], end_edge=edges[1], placed=placed, context=context, first=first, loop=None, final=final,
         broken=broken, fracture_points=int(border.sum()) if streamed is None else streamed.fracture_points, streamed=streamed,

@@ -14,9 +14,9 @@ from gearwear.diagnose.effects.base import MADE, MEASURED
 from gearwear.diagnose.loop import Loop
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
-from gearwear.placing.cells import CellGrid, Cells, bin_points
+from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.in_cells import InCells
 from gearwear.placing.low_tips import below_tips, tip_shift
-from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import Pose, motion_columns, small_motion
 from gearwear.placing.registration import narrowed_bands, stray_limit
 from gearwear.placing.strays import StrayLimits
@@ -33,10 +33,9 @@ def clip_of(located: SurfacePoints) -> float:
     return max(stray_limit(located), 60.0 * LEAST_NOISE)
 
 
-def with_pits(located: SurfacePoints, grid: CellGrid) -> Cells:
-    """The cells of a scan without its strays; the points of small pits are none."""
-    far, belongs = find_far_points(located, grid)
-    return replace(bin_points(located, grid, clip=clip_of(located), keep=belongs), far=far)
+def in_cells(located: SurfacePoints, grid: CellGrid) -> InCells:
+    """A scan in cells, its strays told."""
+    return InCells.of(located, grid, clip_of(located))
 
 
 def is_far(loop: Loop, cells: Cells) -> bool:

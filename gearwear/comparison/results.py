@@ -36,11 +36,10 @@ from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
 from gearwear.meshing.study import transmission_error_as_drawn
-from gearwear.placing.pits import find_far_points
+from gearwear.placing.in_cells import InCells
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
-from gearwear.placing.strays import near_centre
 from gearwear.running.found import SecondLoop
 from gearwear.wear.breakage import Broken
 from gearwear.wear.regions import UNIT, Wear, WearRegion
@@ -392,8 +391,7 @@ class Results(Card):
     def strays(self) -> Bools:
         """Which of the located points lie too far from their neighbours to be of the gear, (n,); those of small pits do not."""
         located, grid = self.measured.placed.located, self.measured.cells.grid
-        near = near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
-        return ~(near | find_far_points(located, grid)[1])
+        return ~InCells.of(located, grid, stray_limit(located)).means()[1]
 
     def headline(self) -> str:
         open_, limits, unit = "", self.volume_range, UNIT[self.planar]

@@ -206,7 +206,8 @@ class Scanned:
     @property
     def as_made_points(self) -> SurfacePoints:
         """Points of flanks, deviations from the gear as it was made."""
-        return as_made_points(self.measured.located, self.measured.cells, self.as_made, self.measured.loop)
+        lying = self.measured.final.lying
+        return as_made_points(lying.points, lying.cell, self.measured.cells, self.as_made, self.measured.loop)
 
 
 def _scanned(

@@ -37,7 +37,7 @@ WORTH_THREADS = 3
 """Chunks from which on threads share them: to start some takes as long as a chunk or two."""
 
 
-@dataclass(frozen=True, slots=True, weakref_slot=True)
+@dataclass(frozen=True, slots=True)
 class SurfacePoints:
     """n points located on the design.
 

@@ -18,7 +18,6 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
 from gearwear.design.twist import Segment, section_angle, segments
-from gearwear.placing.known_cells import cells_kept
 from gearwear.placing.strays import near_centre
 from gearwear.placing.sums import CellSums
 
@@ -250,11 +249,7 @@ class CellGrid:
         return start + size
 
     def index(self, points: SurfacePoints) -> Ints:
-        """Cell of each point, (n,) int64; −1 where the surface is OTHER. Of many points it is kept (`cells_kept`)."""
-        division = (id(self.gear), self.rows, self.flank, self.tip, self.root, self.ring, self.fillet_radius.tobytes())
-        return cells_kept(points, division, self, self._index)
-
-    def _index(self, points: SurfacePoints) -> Ints:
+        """Cell of each point, (n,) int64; −1 where the surface is OTHER."""
         if compiled.pays(len(points)):
             from gearwear.placing.compiled_index import cells_at
 
@@ -443,7 +438,7 @@ class Cells:
         return replace(self, points=self.points.with_deviation(deviation))
 
 
-def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None, keep: Bools | None = None) -> Cells:
+def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None) -> Cells:
     """Average a located scan over the cells of a grid.
 
     Parameters
@@ -454,8 +449,6 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None,
         The division.
     clip : float or None
         Points further than this (mm) from their cell's robust centre are left out as strays; None keeps all.
-    keep : (n,) bool or None
-        Points that are no strays however far off they lie.
 
     Returns
     -------
@@ -463,8 +456,7 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None,
     """
     index = grid.index(points)
     if clip is not None:
-        near = near_centre(points.deviation, index, grid, clip)
-        index = np.where(near if keep is None else near | keep, index, -1)
+        index = np.where(near_centre(points.deviation, index, grid, clip), index, -1)
     return cells_of(CellSums.of(points, index, grid.count), grid)
 
 

@@ -37,15 +37,17 @@ EDGE_CELLS = 1
 """Cells along tip and ends of a flank in which nothing is counted: edges are rounded, broken, or carry a burr."""
 
 
-def find_far_points(points: SurfacePoints, grid: CellGrid) -> tuple[FarPoints, Bools]:
+def find_far_points(points: SurfacePoints, cell: Ints, grid: CellGrid) -> tuple[FarPoints, Bools]:
     """Find the cells of flanks whose low points hang together.
 
     Parameters
     ----------
     points : SurfacePoints
         The located scan, n points.
+    cell : (n,) int
+        Cell of each point; −1: none.
     grid : CellGrid
-        Its cells, m of them.
+        The cells, m of them.
 
     Returns
     -------
@@ -62,7 +64,6 @@ def find_far_points(points: SurfacePoints, grid: CellGrid) -> tuple[FarPoints, B
     flank where that is more. K of them or more have the chance P(K; λ). Places are squares of `WINDOWS` cells, half overlapping, rows along
     the profile as grooves run, and whole flanks; each of these sizes gets an equal part of `PIT_FALSE_ALARM`, shared among its places.
     """
-    cell = grid.index(points)
     reach = FarReach.of(points, cell, grid)
     pits = hanging_together(reach.tally(points, cell), reach)
     return pits.far, pits.hold(points, cell)

@@ -22,7 +22,7 @@ from gearwear.design.card import measured
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import teeth_words
 from gearwear.design.side import Side
-from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.design.surface import flank_points
 from gearwear.design.twist import Segment, from_end, section_angle, twisted, wrapped_angle
 from gearwear.placing.cells import CellGrid
 from gearwear.placing.side_maps import rim
@@ -372,7 +372,7 @@ class Fracture:
 
 
 def measure_broken(
-    points: Floats, located: SurfacePoints, fractures: list[tuple[int, Ints]], border: Bools, grid: CellGrid, noise: float
+    points: Floats, cell: Ints, fractures: list[tuple[int, Ints]], border: Bools, grid: CellGrid, noise: float
 ) -> tuple[Broken, ...]:
     """What is broken off, and teeth that were not seen.
 
@@ -380,8 +380,8 @@ def measure_broken(
     ----------
     points : (n, 3) float
         The registered scan, in the design frame, mm.
-    located : SurfacePoints
-        The same, on the design.
+    cell : (n,) int
+        Cell of each point; −1: on no surface.
     fractures : list
         From `find_fractures`.
     border : (n,) bool
@@ -424,7 +424,7 @@ def measure_broken(
         result.append(replace(named, flank_gone=there))
     broken = {broken.tooth for broken in result}
     nothing = np.zeros((0, 3))
-    cell, seen = grid.index(located), np.zeros(grid.count)
+    seen = np.zeros(grid.count)
     seen[cell[cell >= 0]] = 1.0
     flank = grid.flank_shape(seen).mean(axis=(1, 2, 3))  # by cells: density is uneven, and a fillet is no tooth
     usual = float(np.quantile(flank, SEEN_WELL))

@@ -286,22 +286,22 @@ def _column_errors(cells: Cells, half: int, teeth: Ints, seen: Floats, loop: Loo
     return np.asarray(whole - np.diag((share**2 * noise**2 / np.maximum(count, 1.0)).sum(axis=(0, 1))), dtype=np.float64)
 
 
-def as_made_points(points: SurfacePoints, measured: Cells, as_made: Cells, loop: Loop | None) -> SurfacePoints:
+def as_made_points(points: SurfacePoints, cell: Ints, measured: Cells, as_made: Cells, loop: Loop | None) -> SurfacePoints:
     """Flank points with their deviation from the as-made gear, without strays.
 
     Parameters
     ----------
     points : SurfacePoints
-        As measured.
+        As measured, n points.
+    cell : (n,) int
+        Cell of each point; −1: none.
     measured, as_made : Cells
         The same in cells, and what is left of them against the as-made gear. What the effects of the loop do not say of the difference
         (unexplained patterns, a scan before wear) is taken off each point as off its cell's mean.
     loop : Loop or None
         Where the as-made gear comes from.
     """
-    grid = measured.grid
-    cell = grid.index(points)
-    on = (points.surface == FLANK) & (cell >= 0) & near_centre(points.deviation, cell, grid, stray_limit(points))
+    on = (points.surface == FLANK) & (cell >= 0) & near_centre(points.deviation, cell, measured.grid, stray_limit(points))
     flank, cell = points.take(on), cell[on]
     taken = as_made.points.deviation - measured.points.deviation
     if loop is not None:

@@ -10,6 +10,7 @@ from scipy.stats import binom
 from gearwear.design.side import Side
 from gearwear.design.surface import flank_points
 from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.placing.in_cells import InCells
 from gearwear.placing.pits import find_far_points
 from gearwear.wear.regions import _hidden_pits, find_wear
 from tests.placing.placing import designed
@@ -48,9 +49,8 @@ def with_pits(points, tooth, side, random, number=25, radius=0.5, depth=0.15):
 
 
 def binned(points):
-    grid = CellGrid.for_scan(GEAR, POINTS, size=1.6)
-    far, belongs = find_far_points(points, grid)
-    return replace(bin_points(points, grid, clip=6.0 * NOISE, keep=belongs), far=far), belongs
+    lying = InCells.of(points, CellGrid.for_scan(GEAR, POINTS, size=1.6), 6.0 * NOISE)
+    return lying.means()[0], find_far_points(points, lying.cell, lying.grid)[1]
 
 
 def test_strays_alone_are_seldom_pits():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FLANK, SurfacePoints, flank_points
 from gearwear.placing.cells import CellGrid, Cells, bin_points, cells_of
-from gearwear.placing.known_cells import REMEMBERED, _known
+from gearwear.placing.in_cells import InCells
 from gearwear.placing.pits import FarReach, find_far_points, hanging_together
 from gearwear.placing.strays import StrayLimits, near_centre
 from gearwear.placing.sums import CellSums
@@ -102,7 +100,7 @@ def test_cells_of_a_pass_before_tell_the_same_strays() -> None:
 @pytest.mark.parametrize("size", CHUNKS)
 def test_pits_are_told_alike_chunk_by_chunk(size: int) -> None:
     points = scattered()
-    far, belongs = find_far_points(points, GRID)
+    far, belongs = find_far_points(points, GRID.index(points), GRID)
     assert far.hung.any()  # the pit
 
     reach = FarReach.of(points, GRID.index(points), GRID)
@@ -156,15 +154,17 @@ def test_pooled_cells_hold_all_points() -> None:
     assert (pooled.points.surface[pooled.seen] == FLANK).all()
 
 
-def test_cells_of_many_points_are_kept_while_the_points_are() -> None:
-    """Of points in place of others, and on another grid, they are found anew."""
-    points, other = scattered(), scattered().take(np.arange(POINTS)[::-1])
-    assert len(points) >= REMEMBERED
-    first = GRID.index(points)
-    assert GRID.index(points) is first
-    np.testing.assert_array_equal(GRID.index(other), first[::-1])
-    coarse = replace(GRID, rows=GRID.rows // 2)
-    np.testing.assert_array_equal(coarse.index(points), coarse._index(points))
-    held = len(_known)
-    del points, other
-    assert len(_known) == held - 2
+def test_points_in_cells_are_those_within_reach_and_those_of_pits() -> None:
+    """Beside the pit the cells hold what `bin_points` leaves in them, and of the pit all its points."""
+    points = scattered()
+    lying = InCells.of(points, GRID, 0.06)
+    np.testing.assert_array_equal(lying.cell, GRID.index(points))
+    cells, belongs = lying.means()
+    plain = bin_points(points, GRID, clip=0.06)
+    assert cells.count.sum() == belongs.sum() > plain.count.sum() == lying.near.sum()
+    assert cells.far is not None
+    deep = (points.tooth == 5) & (points.side > 0) & (np.abs(points.deviation + 0.09) < 0.03)
+    assert deep.sum() > 5 and belongs[deep].all() and not lying.near[deep].all()
+    np.testing.assert_array_equal(cells.count[~cells.far.hung], plain.count[~cells.far.hung])
+    half = points.tooth < 6
+    np.testing.assert_array_equal(lying.flanks(half).deviation, points.deviation[half & lying.near])

@@ -62,7 +62,7 @@ def test_a_cut_is_named_with_its_volume(kind):
     grid = CellGrid.for_scan(GEAR, len(points))
     fractures = find_fractures(points, GEAR)
     border = with_borders(points, fractures, GEAR, 0.005)
-    (broken,) = measure_broken(points, locate(points, GEAR), fractures, border, grid, 0.005)
+    (broken,) = measure_broken(points, grid.index(locate(points, GEAR)), fractures, border, grid, 0.005)
     assert (broken.tooth, broken.kind) == (0, kind)
     assert abs(broken.volume - true_volume(point, normal)) < 3.0 * broken.std
     assert broken.std < 0.05 * broken.volume
@@ -89,7 +89,7 @@ def test_teeth_that_were_not_seen_are_not_called_missing(unseen):
     points = points[~(np.isin(tooth, unseen) & (np.hypot(*points[:, :2].T) > GEAR.root_radius))]
     grid = CellGrid.for_scan(GEAR, len(points))
     fractures = find_fractures(points, GEAR)
-    broken = measure_broken(points, locate(points, GEAR), fractures, np.zeros(len(points), dtype=bool), grid, 0.01)
+    broken = measure_broken(points, grid.index(locate(points, GEAR)), fractures, np.zeros(len(points), dtype=bool), grid, 0.01)
     assert tuple(piece.tooth for piece in broken) == unseen
     for piece in broken:
         assert (piece.kind, piece.flank) == ("not seen", "tooth")

@@ -66,7 +66,7 @@ def measured(gear, cuts):
     grid = CellGrid.for_scan(design, len(points))
     fractures = find_fractures(points, design)
     border = with_borders(points, fractures, design, NOISE)
-    return grid, measure_broken(points, locate(points, design), fractures, border, grid, NOISE)
+    return grid, measure_broken(points, grid.index(locate(points, design)), fractures, border, grid, NOISE)
 
 
 @pytest.mark.parametrize(

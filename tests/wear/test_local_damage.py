@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.special import exp1
 from scipy.stats import norm
 
 from gearwear.design.surface import flank_points
-from gearwear.placing.cells import CellGrid, bin_points
-from gearwear.placing.pits import find_far_points
+from gearwear.placing.cells import CellGrid
+from gearwear.placing.in_cells import InCells
 from gearwear.wear.regions import find_wear
 from gearwear.wear.volume import share_of_rest
 from tests.placing.cells import every_cell, flanks_of, with_flanks
@@ -34,8 +32,7 @@ def scanned(random, damage):
     depth = np.where(own, damage((roll**2 - GEAR.form_roll**2) / (2.0 * GEAR.base_radius), height), 0.0)
     points = flank_points(GEAR, tooth, side, roll, height).with_deviation(NOISE * random.standard_normal(POINTS) - depth)
     grid = CellGrid.for_scan(GEAR, POINTS, size=1.6)
-    far, belongs = find_far_points(points, grid)
-    return replace(bin_points(points, grid, clip=6.0 * NOISE, keep=belongs), far=far)
+    return InCells.of(points, grid, 6.0 * NOISE).means()[0]
 
 
 def grooves(places, wide, deep):

@@ -60,7 +60,10 @@ def placed_laws(scan: SyntheticScan, registration: Registration, worn_side: Side
     """Of a registered scan, without a loop and without a mate."""
     cells = binned(scan.points, GEAR, registration)
     located = locate(registration.pose.apply(scan.points), GEAR, registration.bands)
-    points, wear = as_made_points(located, cells, cells, None), find_wear(cells, registration.noise, sides_of(worn_side))
+    points, wear = (
+        as_made_points(located, cells.grid.index(located), cells, cells, None),
+        find_wear(cells, registration.noise, sides_of(worn_side)),
+    )
     return fit_laws(wear, points, cells, make_context(cells, np.eye(3), False), None, registration.noise)
 
 

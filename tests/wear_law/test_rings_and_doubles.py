@@ -141,7 +141,7 @@ def test_flanks_worn_by_archard_tell_the_coefficient(worn):
     # So light a loss, alike on all teeth, may be told as one answer of two: worn, or made so.
     measured = next(answer for answer in (likeliest, *likeliest.undecided) if answer.worn_sides == {Side.LEFT})
     wear, gear = gw.find_wear(measured), measured.gear
-    points = as_made_points(measured.located, measured.cells, measured.as_made, measured.loop)
+    points = as_made_points(measured.located, measured.final.lying.cell, measured.cells, measured.as_made, measured.loop)
     centre = abs(gear.orientation * gear.reference_radius + mate.orientation * mate.reference_radius)
     found = study_wear(wear, points, measured.as_made, Side.LEFT, mate, centre, measured.loop, measured.noise, Ahead(1e6, (2e6,)))
     assert found.why_not == "" and found.best is not None and len(found.teeth) >= gear.teeth - 2

@@ -57,7 +57,7 @@ def measure(
 
 
 def flanks_of(measured: MeasuredGear) -> SurfacePoints:
-    return as_made_points(measured.located, measured.cells, measured.as_made, measured.loop)
+    return as_made_points(measured.located, measured.final.lying.cell, measured.cells, measured.as_made, measured.loop)
 
 
 def law_of(measured: MeasuredGear, wear: Wear, side: int = 1, ahead: Ahead | None = None) -> WearStudy:
