@@ -114,7 +114,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     if far or is_far(likeliest, scan.cells):
         scan, again = scan.located_again(likeliest)
         likeliest = scan.explained()
-    likeliest, *others = beside_smoothing((likeliest, *likeliest.others), scan.located, len(measured.scans), scan.cells)
+    likeliest, *others = beside_smoothing((likeliest, *likeliest.others), scan.cells)
     return replace(scan.closed(likeliest, again), undecided=tuple(scan.moved(other, again) for other in others))
 
 

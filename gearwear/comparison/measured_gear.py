@@ -16,7 +16,7 @@ from gearwear.comparison.laying import laid_on, unstated_root
 from gearwear.comparison.own_edges import on_its_ends, on_its_tips, on_tips_of
 from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.passes import Streamed, first_pass
-from gearwear.comparison.placed_notes import VIEWS_MAY_LIE_APART, doubts_of, said_of_scale, sample_note, smoothing_of
+from gearwear.comparison.placed_notes import SMOOTHED, VIEWS_MAY_LIE_APART, doubts_of, said_of_scale, sample_note, was_smoothed
 from gearwear.comparison.relocated import LEAST_NOISE, clip_of, in_cells
 from gearwear.comparison.stated import at_20_degrees, check_streamed, tooth_1_of, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
@@ -231,7 +231,7 @@ class MeasuredGear(Card):
     @property
     def remarks(self) -> tuple[str, ...]:
         """Notes on how the numbers came about."""
-        smoothing = smoothing_of(self.located, len(self.scans))
+        smoothing = (SMOOTHED,) if self.context.smoothed else ()
         if self.context.views_apart > 0.0 and not self.layered.any():
             smoothing = (VIEWS_MAY_LIE_APART,)
         sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
@@ -384,11 +384,12 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         for gear in design.gears.values():
             refuse(gear, "a planar section", Toothing.DOUBLE_HELICAL)
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans))
+    smoothed = was_smoothed(placed.located, len(scans))
     if grid is None:
-        placed, tip = on_its_tips(placed, scans, drawn)
+        placed, tip = on_its_tips(placed, scans, drawn, smoothed)
     else:
         placed, tip = on_tips_of(grid.gear, placed, scans, drawn)
-    placed, end = on_its_ends(placed, scans, tip.gear)
+    placed, end = on_its_ends(placed, scans, tip.gear, smoothed)
     placed, root = on_its_root(placed, scans, end.gear)
     motion, mark = tooth_1_of(design.datum, scans, placed, root.gear)
     if motion is not None:
@@ -396,7 +397,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     if design.datum.leaves_out:
         scans = without_ignored(scans, placed, root.gear, design.datum)
         placed = _laid(placed, scans, root, Pose.identity())
-    return replace(_in_cells(design, scans, name, placed, root, (tip, end), grid), mark=mark)
+    return replace(_in_cells(design, scans, name, placed, root, (tip, end), grid, smoothed), mark=mark)
 
 
 @on_one_thread
@@ -412,7 +413,8 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
     """
     placed = _laid(measured.placed, measured.scans, measured.root, motion)
     edges = measured.tip_edge, measured.end_edge
-    again = _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, edges, measured.first.grid)
+    grid, smoothed = measured.first.grid, measured.context.smoothed
+    again = _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, edges, grid, smoothed)
     return replace(again, mark=measured.mark)
 
 
@@ -428,6 +430,7 @@ def _in_cells(
     root: Root,
     edges: tuple[TipEdge, EndEdge],
     grid: CellGrid | None,
+    smoothed: bool,
 ) -> MeasuredGear:
     """A placed scan without what is broken off, in cells."""
     gear, planar = root.gear, scans[0].planar
@@ -468,7 +471,7 @@ def _in_cells(
     apart = how_far_apart(first) if len(scans) == 1 and stitched else 0.0
     context = replace(
         context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent, views_apart=apart,
-        turntable=design.scanner.turntable, stitched=stitched,
+        turntable=design.scanner.turntable, stitched=stitched, smoothed=smoothed,
     )  # fmt: skip
     final = FinalPlace(lying, placed.registration.pose, first)
     return MeasuredGear(

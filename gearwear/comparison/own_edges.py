@@ -15,7 +15,7 @@ EDGE_PASSES = 2
 """An edge found in a pose that its points have bent is looked for once more in the better one."""
 
 
-def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear) -> tuple[PlacedScan, TipEdge]:
+def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, smoothed: bool = False) -> tuple[PlacedScan, TipEdge]:
     """The scan on the design with the edges between flanks and tips that it shows.
 
     Parameters
@@ -26,13 +26,15 @@ def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear) -> tuple[
         Views of one gear.
     gear : Gear
         The design.
+    smoothed : bool
+        Whether the scan was smoothed, which rounds every edge.
     """
-    edge = fit_tip_edge(placed.located, gear, placed.registration.noise)
+    edge = fit_tip_edge(placed.located, gear, placed.registration.noise, smoothed)
     for _ in range(EDGE_PASSES):
         if edge.fits_design:
             break
         placed = laid_on(edge.gear, scans, unstated_root(edge.gear), placed)
-        again = fit_tip_edge(placed.located, gear, placed.registration.noise)
+        again = fit_tip_edge(placed.located, gear, placed.registration.noise, smoothed)
         if again.fits_design or again.height == edge.height:
             break
         edge = again
@@ -48,7 +50,7 @@ def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gea
     return laid_on(own, scans, unstated_root(own), placed), TipEdge(own, other.spec.tip_chamfer)
 
 
-def on_its_ends(placed: PlacedScan, scans: Sequence[Scan], gear: Gear) -> tuple[PlacedScan, EndEdge]:
+def on_its_ends(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, smoothed: bool = False) -> tuple[PlacedScan, EndEdge]:
     """The scan on the design with the edges at the ends of the face that it shows; what they bent of the pose is out of it before they are told.
 
     Parameters
@@ -59,12 +61,14 @@ def on_its_ends(placed: PlacedScan, scans: Sequence[Scan], gear: Gear) -> tuple[
         Views of one gear.
     gear : Gear
         That gear.
+    smoothed : bool
+        Whether the scan was smoothed.
     """
-    edge = fit_end_edge(placed.located, gear, placed.registration.noise)
+    edge = fit_end_edge(placed.located, gear, placed.registration.noise, smoothed)
     if edge.fits_design:
         return placed, edge
     placed = laid_on(edge.gear, scans, unstated_root(gear), placed)
-    again = fit_end_edge(placed.located, gear, placed.registration.noise)
+    again = fit_end_edge(placed.located, gear, placed.registration.noise, smoothed)
     if again.fits_design:
         return placed, edge
     return laid_on(again.gear, scans, unstated_root(gear), placed), again

@@ -115,13 +115,12 @@ def _or_a_view(effect: FoundEffect) -> FoundEffect:
     return effect.or_one_of({VIEW_REGISTRATION})
 
 
-def beside_smoothing(loops: Sequence[Loop], located: SurfacePoints, views: int, cells: Cells) -> tuple[Loop, ...]:
+def beside_smoothing(loops: Sequence[Loop], cells: Cells) -> tuple[Loop, ...]:
     """Loops that were closed on a scan, with what it leaves open if it was smoothed: a form of the flanks may be what rounded its edges.
 
     A mean over neighbours bends what ends; a plane it leaves as it is, and a slope that all of a flank has is none of it.
     """
-    alike = all(or_smoothing(effect).alternatives == effect.alternatives for loop in loops for effect in loop.effects)
-    if alike or not smoothing_of(located, views):
+    if not any(loop.context.smoothed for loop in loops):
         return tuple(loops)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
 
@@ -150,9 +149,9 @@ VIEWS_MAY_LIE_APART = (
 )
 
 
-def smoothing_of(located: SurfacePoints, views: int) -> tuple[str, ...]:
-    """That neighbouring points share their errors, where they do; views that are stitched lie apart by more than their noise."""
-    return (SMOOTHED,) if views == 1 and shared_errors(located) < SHARED else ()
+def was_smoothed(located: SurfacePoints, views: int) -> bool:
+    """Whether neighbouring points share their errors; of views that are stitched, which lie apart by more than their noise, that is not told."""
+    return views == 1 and shared_errors(located) < SHARED
 
 
 def sample_note(points: int, sample: int) -> str:

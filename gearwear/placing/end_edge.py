@@ -21,7 +21,6 @@ from gearwear.placing.tip_edge import (
     AS_DRAWN,
     BEFORE,
     BESIDE,
-    LEAST_DEPTH,
     LEAST_IN_BIN,
     MOST_SHARE,
     OFF_LAND,
@@ -30,7 +29,9 @@ from gearwear.placing.tip_edge import (
     STEEPEST_FLANK,
     STEP,
     departs,
+    least_depth,
     on_flanks_alone,
+    rounded_to,
 )
 
 REACH, REACH_SHARE = 1.0, 0.2
@@ -81,7 +82,7 @@ class EndEdge:
         )
 
 
-def fit_end_edge(located: SurfacePoints, gear: Gear, noise: float) -> EndEdge:
+def fit_end_edge(located: SurfacePoints, gear: Gear, noise: float, smoothed: bool = False) -> EndEdge:
     """Find where the flanks of all teeth end along the face.
 
     Parameters
@@ -92,6 +93,8 @@ def fit_end_edge(located: SurfacePoints, gear: Gear, noise: float) -> EndEdge:
         The design.
     noise : float
         Scatter of points, mm.
+    smoothed : bool
+        Whether the scan was smoothed: edges are rounded then, by however little.
 
     Notes
     -----
@@ -108,9 +111,11 @@ def fit_end_edge(located: SurfacePoints, gear: Gear, noise: float) -> EndEdge:
         first = float(np.quantile(height[near], ABOVE)) + max(OFF_LAND * gear.transverse_module, OFF_LAND_STDS * noise)
         for side in Side:
             on = near & (flank.side == int(side))
-            found[:, end, side.index] = _edge(flank.tooth[on], flank.deviation[on], height[on], first, first + reach, gear)
+            found[:, end, side.index] = _edge(
+                flank.tooth[on], flank.deviation[on], height[on], first, first + reach, gear, smoothed
+            )
     drawn = np.array(gear.spec.end_edges)
-    found[:, (found[1] < LEAST_DEPTH) | (found[0] <= drawn + AS_DRAWN * gear.transverse_module)] = 0.0
+    found[:, (found[1] < least_depth(smoothed)) | (found[0] <= drawn + AS_DRAWN * gear.transverse_module)] = 0.0
     there = found[0] > 0.0
     # Of the other side there is one at the same end, or at the other.
     found[:, ~(there & (there[:, ::-1] | there[::-1, ::-1]))] = 0.0
@@ -134,7 +139,9 @@ def _to_the_ends(located: SurfacePoints, gear: Gear, reach: float) -> SurfacePoi
     return on_flanks_alone(points[near], gear.recut(end_chamfer=0.0, end_rounding=0.0, ends_seen=None))
 
 
-def _edge(tooth: Ints, deviation: Floats, height: Floats, first: float, last: float, gear: Gear) -> tuple[float, float]:
+def _edge(
+    tooth: Ints, deviation: Floats, height: Floats, first: float, last: float, gear: Gear, smoothed: bool
+) -> tuple[float, float]:
     """How far from an end the edge of a side begins, and how deep it is next to the end, mm; zeros where there is none."""
     level, there = _levels(tooth, deviation, height > last, gear.teeth)
     on = there[tooth] & (height < last)
@@ -154,9 +161,9 @@ def _edge(tooth: Ints, deviation: Floats, height: Floats, first: float, last: fl
     past = (height > cuts[0]) & (height < begins)
     mean, seen = _levels(tooth, deviation, past, gear.teeth)
     typical = float(np.median(mean[seen])) if seen.any() else 0.0
-    if not typical < 0.0 or (mean[seen] < 0.5 * typical).mean() < MOST_SHARE:
+    if not typical < 0.0 or not (smoothed or (mean[seen] < 0.5 * typical).mean() >= MOST_SHARE):
         return 0.0, 0.0
-    return begins, depth
+    return rounded_to(begins, depth) if smoothed else begins, depth
 
 
 def _profile(height: Floats, deviation: Floats, first: float, step: float) -> tuple[Floats, Floats, Floats]:

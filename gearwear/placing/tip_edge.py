@@ -27,8 +27,9 @@ OVER = 3
 STEEPEST_FLANK = 0.1
 """By how much a flank falls per height, reliefs and wear by sliding with it: 60 µm over half a millimetre. A bevel of 45° on a flank that leans by 40° falls
 by 0.12, one with equal legs by 0.5."""
-LEAST_DEPTH = 0.05
-"""Depth, mm, at the tip from which on a bevel is one: a scanner's spot rounds edges by less."""
+LEAST_DEPTH, LEAST_SMOOTHED = 0.05, 0.015
+"""Depth, mm, at the tip from which on a bevel is one: a scanner's spot rounds edges by less. Those of a scan that was smoothed are rounded for certain, on every
+tooth, and three times what an edge has begun by (`DEPARTED`) shows how far."""
 LEAST_IN_BIN = 20
 """Points in a bin, of one side of all teeth, that have a median."""
 ABOVE = 0.02
@@ -82,7 +83,7 @@ class TipEdge:
         )
 
 
-def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
+def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float, smoothed: bool = False) -> TipEdge:
     """Find where the flanks of all teeth end.
 
     Parameters
@@ -93,6 +94,8 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
         The design.
     noise : float
         Scatter of points, mm.
+    smoothed : bool
+        Whether the scan was smoothed: edges are rounded then, by however little.
 
     Notes
     -----
@@ -120,8 +123,14 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
     depth = float(min(one[last] - one[0] for one in profiles))
     begins = float(edges[max(departs(one, last) for one in profiles) + 1])
     known = way * (gear.tip_radius - gear.flank_end_radius)
-    if depth < LEAST_DEPTH or begins <= known + AS_DRAWN * m or not _of_all(flank, height, first, begins, depth):
+    if (
+        depth < least_depth(smoothed)
+        or begins <= known + AS_DRAWN * m
+        or not (smoothed or _of_all(flank, height, first, begins, depth))
+    ):
         return TipEdge(gear)
+    if smoothed:
+        begins = rounded_to(begins, depth)
     # Where the land is not seen to end, it ends 45° up from where the flank does.
     land = _land(points, gear, top)
     half = float(gear.half_angle(gear.tip_radius - way * begins))
@@ -132,6 +141,17 @@ def fit_tip_edge(located: SurfacePoints, gear: Gear, noise: float) -> TipEdge:
         return TipEdge(gear)
     ends_at = ends.tip_half_angle if land is None else land / gear.tip_radius
     return TipEdge(ends, begins, gear.base_radius * (float(gear.half_angle(gear.tip_radius)) - ends_at))
+
+
+def least_depth(smoothed: bool) -> float:
+    """How deep an edge is at least that is one, mm."""
+    return LEAST_SMOOTHED if smoothed else LEAST_DEPTH
+
+
+def rounded_to(begins: float, depth: float) -> float:
+    """How far from an edge the rounding by a mean over neighbours ends, mm, that is `depth` deep there and deeper than `DEPARTED` as far as it `begins`: it
+    fades as a parabola (`edge_rounding`), which is below any threshold before it ends."""
+    return begins / (1.0 - math.sqrt(DEPARTED / depth))
 
 
 def _near_tips(located: SurfacePoints, gear: Gear) -> Floats:

@@ -12,7 +12,7 @@ import numpy as np
 
 import gearwear as gw
 from gearwear.comparison.notes import off_the_drawing, proud_notes, seam_note, take_each_other_back
-from gearwear.comparison.placed_notes import SMOOTHED, beside_smoothing, smoothing_of
+from gearwear.comparison.placed_notes import beside_smoothing, was_smoothed
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
 from gearwear.diagnose.effects.tip_diameter import EFFECT as TIP_DIAMETER
@@ -115,15 +115,13 @@ def test_no_note_is_lost_or_said_twice():
 def test_a_scan_is_smoothed_where_its_points_share_their_errors_and_not_where_flanks_are_stepped():
     points, errors = flanks()
     stepped = points.with_deviation(0.006 * errors + form(points))
-    assert smoothing_of(stepped, 1) == ()
+    assert not was_smoothed(stepped, 1)
     means = points.with_deviation(smoothed(points, 0.006 * errors, 6) + form(points))
-    assert smoothing_of(means, 1) == (SMOOTHED,) and smoothing_of(means, 2) == ()
+    assert was_smoothed(means, 1) and not was_smoothed(means, 2)
 
 
 def test_forms_of_a_smoothed_scan_may_be_its_rounded_edges_and_slopes_and_levels_may_not():
     """A mean over neighbours bends what ends, and leaves a plane as it is."""
-    points, errors = flanks()
-    means = points.with_deviation(smoothed(points, 0.006 * errors, 6))
     real = fake_results()
     cells, context, effects = real.measured.first, real.loop.context, []
     for name in ("tip_relief", "helix_crowning", "profile_slope", "helix_slope", "coating"):
@@ -131,9 +129,9 @@ def test_forms_of_a_smoothed_scan_may_be_its_rounded_edges_and_slopes_and_levels
         shape = effect.candidate.effect.shapes(context)[0]
         each = effect.candidate.effect.basis(cells.points.take(cells.seen), context, shape).shape[1]
         effects.append(replace(effect, candidate=replace(effect.candidate, shape=shape), amplitudes=np.full(each, 0.01)))
-    loop = replace(real.loop, effects=tuple(effects), form=())
-    doubted = beside_smoothing((loop,), means, 1, cells)[0].effects
+    sharp = replace(real.loop, effects=tuple(effects), form=())
+    loop = replace(sharp, context=replace(context, smoothed=True))
+    doubted = beside_smoothing((loop,), cells)[0].effects
     assert [bool(effect.alternatives) for effect in doubted] == [True, True, False, False, False]
     assert set(doubted[0].alternatives) == {"edge_rounding"}
-    assert beside_smoothing((loop,), points.with_deviation(0.006 * errors), 1, cells)[0] is loop
-    assert beside_smoothing((loop,), means, 2, cells)[0] is loop
+    assert beside_smoothing((sharp,), cells)[0] is sharp

@@ -174,7 +174,22 @@ def ringed(one: Sample, parameters, shape) -> np.ndarray:
     return one.pushed(np.where(one.surface == Surface.FLANK, flank, on))
 
 
-ANEW = {"profile_shift": shifted, "edge_rounding": rounded, "root_form": ringed}
+def sunk(one: Sample, parameters, shape) -> np.ndarray:
+    """In along the normal by the curvature of each surface over a flank's at the reference circle: across its straight lines, which lean as the base helix
+    does, a helicoid bends as the section's involute times the cosine of that."""
+    gear = one.gear
+    lead = math.pi * gear.teeth * gear.normal_module / abs(math.sin(gear.helix_angle))
+    lean = math.cos(math.atan(2.0 * math.pi * gear.base_radius / lead))
+    bent = np.zeros(len(one))
+    bent[one.flank] = lean / one.roll[one.flank]
+    on = np.isin(one.surface, (Surface.ROOT, Surface.TIP))
+    bent[on] = 1.0 / one.radius[on]
+    bent[one.surface == Surface.BORE] = -1.0 / one.radius[one.surface == Surface.BORE]
+    reference = gear.reference_radius * math.sin(gear.transverse_pressure_angle)
+    return one.pushed(-1e-3 * parameters["sag_um"] * bent * reference / lean)
+
+
+ANEW = {"profile_shift": shifted, "edge_rounding": rounded, "root_form": ringed, "smoothing": sunk}
 """Displacements that the effects' own tests draw on a spur gear."""
 
 

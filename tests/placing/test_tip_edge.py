@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.gear import Gear
-from gearwear.design.surface import locate
+from gearwear.design.surface import FLANK, locate
 from gearwear.placing.tip_edge import STEP, fit_tip_edge
 from tests.placing.placing import designed
 from tests.synthetic import Effect, GearNumbers, Recipe, SlidingWear, make_scan
@@ -73,6 +73,22 @@ def test_an_edge_that_is_drawn_is_not_looked_for_again(drawn, kept):
     edge = found(bevelled(points(), NUMBERS, 0.45, 0.45), gear)
     assert edge.fits_design is kept
     assert height_of(NUMBERS, 0.45) == pytest.approx(0.38, abs=0.01)
+
+
+@pytest.mark.parametrize(("deep", "reach"), [(0.03, 0.3), (0.045, 0.4)], ids=str)
+def test_of_a_scan_that_was_smoothed_a_shallow_rounding_is_an_edge_to_where_it_ends(deep, reach):
+    """A parabola along the flank to its tip: below 5 µm it cannot be seen to go on, and does."""
+    on = locate(points(), GEAR)
+    along = (GEAR.tip_roll**2 - on.roll**2) / (2.0 * GEAR.base_radius)
+    fall = np.where(on.surface == FLANK, deep * np.clip(1.0 - along / reach, 0.0, 1.0) ** 2, 0.0)
+    cloud = points() - fall[:, None] * on.normal
+    assert found(cloud).fits_design
+    edge = fit_tip_edge(locate(cloud, GEAR), GEAR, 1e-3 * NOISE_UM, smoothed=True)
+    ends = GEAR.tip_roll**2 - 2.0 * GEAR.base_radius * reach
+    height = GEAR.tip_radius - np.hypot(GEAR.base_radius, np.sqrt(ends))
+    assert abs(edge.height - height) < 2.0 * STEP * 3.0
+    sharp = fit_tip_edge(locate(points(), GEAR), GEAR, 1e-3 * NOISE_UM, smoothed=True)
+    assert sharp.fits_design
 
 
 def test_too_few_points_say_nothing():

@@ -89,6 +89,8 @@ class Context:
         Teeth that are missing or were not seen: what each tooth has of its own is not known of these.
     views_apart : float
         How far views that may have been put together in the scan, and do not quite lie on each other, lie from their mean, mm; 0 where none do.
+    smoothed : bool
+        Whether neighbouring points share their errors, as those of a scan that was smoothed do.
     pitch : float or None
         Without a mate: length of roll of the pitch point, mm, as what a side has lost shows it; None: at the reference circle.
     """
@@ -109,6 +111,7 @@ class Context:
     faces: tuple[ActiveFace, ...] = ()
     absent: frozenset[int] = frozenset()
     views_apart: float = 0.0
+    smoothed: bool = False
     pitch: float | None = None
 
     @property

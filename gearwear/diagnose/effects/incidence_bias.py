@@ -23,6 +23,7 @@ class IncidenceBias(CatalogueEffect):
     (1 / cos i − 1) towards the sensor, which moves the surface by that times cos i along its normal. Tips, roots and
     bore (i = 0) read true; flanks have 1 − L / r: 0.91 b at the form circle of a 12-tooth pinion, 0.41 b at its tip, so that flanks alone show a
     thickness and a slope. End faces, which a radial beam does not see, are left out.
+    Of a scan that was smoothed it is not sought: `smoothing` sinks flanks in nearly the same way, and is there for certain.
     """
 
     name: ClassVar[str] = "incidence_bias"
@@ -36,7 +37,7 @@ class IncidenceBias(CatalogueEffect):
     phrase: ClassVar[str] = "a range bias of {bias_um} that grows with the angle of incidence"
 
     def applies(self, context: Context) -> bool:
-        return context.turntable
+        return context.turntable and not context.smoothed
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         end = (points.surface == END_LOW) | (points.surface == END_HIGH)
