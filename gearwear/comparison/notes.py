@@ -85,7 +85,7 @@ def notes_of(
         *((THINNED.format(thinning=gear.spec.thinning),) if thinning_open(measured, unworn) else ()),
         *worn_notes(measured, wear, unworn),
         *contact_note(pair),
-        *((seam_note(seam),) if seam is not None else ()),
+        *((seam_note(seam),) if seam is not None and (seam.of_thinnest or _worn(wear, seam.tooth)) else ()),
         *(() if before is None or before.sure else (before.sentence("the gear in the scan before wear"),)),
         *edge_notes(wear),
         *scanner_notes(design.scanner, measured.placed.registration.noise),
@@ -147,6 +147,10 @@ def proud_notes(proud: tuple[float, float], coverage: Mapping[str, float]) -> li
         for side, height in zip(Side, proud, strict=True)
         if height > 0.0
     ]
+
+
+def _worn(wear: Wear, tooth: int) -> bool:
+    return any(region.tooth == tooth for region in wear.regions)
 
 
 def seam_note(seam: DriftSeam) -> str:

@@ -17,6 +17,7 @@ from gearwear.design.twist import normal_loss
 from gearwear.diagnose.no_datum import most_lost
 from gearwear.wear.limits import common_loss, even_depth, even_part
 from gearwear.wear.regions import Wear, WearRegion
+from gearwear.wear.tooth_summary import DriftSeam
 
 HOLLOW = 2.0
 """How deep a hollow is in its mean depth."""
@@ -28,6 +29,7 @@ class Open(StrEnum):
     SIDES = "the scan does not decide which sides are worn throughout"
     VIEWS = "views that were put together in one file and lie apart on some teeth: what is missing there may be that"
     PITS = "pits or grooves on other flanks, too few there to be told from strays"
+    SEAM = "pitch errors that step in a worn tooth may be a drift of the scan that began there: its flanks are then further apart, or nearer, than they look"
     UNSEEN = "worn flanks of which no tooth was seen whole: what is missing where nothing was seen is not in the value"
     RIDGE = "worn flanks that stand proud of the design at the pitch line: cut thicker, or raised there by plastic flow, the scan does not tell"
     FAINT = "wear shallower than the limits of detection of its flanks"
@@ -67,12 +69,15 @@ class OpenVolume:
         Worn volume and its standard deviation, mm³, with other sides worn throughout that the scan does not exclude.
     unworn_seen : bool
         Whether a scan of the gear before wear shows what was made so.
+    seam : DriftSeam or None
+        The tooth that is told too thin or too thick were pitch errors a drift of the scan.
     """
 
     measured: MeasuredGear
     found: Wear
     undecided: tuple[tuple[float, float], ...]
     unworn_seen: bool = False
+    seam: DriftSeam | None = None
 
     @cached_property
     def limits(self) -> tuple[float, float, str] | None:
@@ -98,7 +103,7 @@ class OpenVolume:
     @cached_property
     def causes(self) -> tuple[OpenPart, ...]:
         """What leaves the volume open: a stated tolerance, an even loss; a scan that does not decide which sides are worn throughout, what each answer would
-        be (95 %); teeth on which views lie apart; pits too few to be told from strays; where it may be more than the 95 % interval, wear too faint to be
+        be (95 %); teeth on which views lie apart; a worn tooth where the scan may have begun; pits too few to be told from strays; where it may be more than the 95 % interval, wear too faint to be
         found; and where they may be more than the standard deviation, flanks not seen whole, sides worn throughout whose loss is not sure, a form of all
         teeth that nothing explains, any form of flanks that are no datum, teeth thinner than drawn, and what may be thicker teeth or a ridge at the pitch line."""
         value, std = self.found.volume, self.found.volume_std
@@ -110,6 +115,8 @@ class OpenVolume:
             causes.append(OpenPart(Open.SIDES, below, above))
         if self.layered > 0.0:  # another answer, and not one beside the others; nor is a form of flanks that are no datum
             causes.append(OpenPart(Open.VIEWS, max(self.layered - below, 0.0), 0.0))
+        if any(self.at_seam):
+            causes.append(OpenPart(Open.SEAM, *self.at_seam))
         if self.found.hidden_pits > 0.0:
             causes.append(OpenPart(Open.PITS, 0.0, self.found.hidden_pits))
         if self.found.unseen > std:
@@ -144,6 +151,21 @@ class OpenVolume:
         """What of the volume lies on teeth on which views lie apart, mm³."""
         apart = self.measured.layered
         return sum(region.volume for region in self.found.regions if apart[region.tooth])
+
+    @property
+    def at_seam(self) -> tuple[float, float]:
+        """By how much less and more the worn flanks of the tooth have lost in which a drift of the scan may have begun, mm³: as much of their depth as the tooth is
+        told too thin, no more than was found, or too thick, and the 95 % interval of what is left; 0 where that is within the volume's standard deviation."""
+        if self.seam is None or self.unworn_seen:
+            return 0.0, 0.0
+        own = [region for region in self.found.regions if region.tooth == self.seam.tooth]
+        depth = normal_loss(self.measured.gear, abs(self.seam.thicker))
+        thin = self.seam.thicker > 0.0
+        # Both flanks together stand apart by that depth: what one has of it the other has not.
+        by = max((min(region.volume, depth * region.area) if thin else depth * region.area for region in own), default=0.0)
+        std = self.found.volume_std
+        far = by + NORMAL_95 * std if by > std else 0.0
+        return (far, 0.0) if thin else (0.0, far)
 
     @property
     def ridge_or_thick(self) -> tuple[float, float]:

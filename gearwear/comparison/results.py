@@ -309,7 +309,7 @@ class Results(Card):
     @cached_property
     def open_volume(self) -> OpenVolume:
         """What leaves the worn volume open."""
-        return OpenVolume(self.measured, self.wear.found, self.wear.undecided, bool(self.before_files))
+        return OpenVolume(self.measured, self.wear.found, self.wear.undecided, bool(self.before_files), self.wear.thickness.seam)
 
     @property
     def volume_range(self) -> tuple[float, float, str] | None:

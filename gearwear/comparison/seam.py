@@ -51,8 +51,8 @@ def with_seam(measured: MeasuredGear, thickness: SectionThickness) -> SectionThi
     otherwise = replace(thickness, arc=thickness.arc + change, unmeasured=moved, surfaces=surfaces)
     told, other = thickness.thinnest(), otherwise.thinnest()
     assert told is not None and other is not None
-    if tooth not in (told.tooth, other.tooth):
-        return thickness  # the thinnest is another one, drift or not
+    if tooth not in (told.tooth, other.tooth):  # the thinnest is another one, drift or not
+        return replace(thickness, seam=DriftSeam(tooth, by))
     reach = NORMAL_95 * relative_std * abs(by) if other.tooth == tooth else 0.0
     return replace(thickness, seam=DriftSeam(tooth, by, other.low - reach, other.high + reach))
 

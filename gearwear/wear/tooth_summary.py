@@ -95,13 +95,18 @@ class DriftSeam:
     thicker : float
         By how much it is thicker then than it is told, mm of arc; − thinner.
     low, high : float
-        95 % interval of the least thickness of the gear then, mm.
+        95 % interval of the least thickness of the gear then, mm; ∞ and −∞ where another tooth is the thinnest either way.
     """
 
     tooth: int
     thicker: float
-    low: float
-    high: float
+    low: float = math.inf
+    high: float = -math.inf
+
+    @property
+    def of_thinnest(self) -> bool:
+        """Whether the least thickness of the gear depends on it."""
+        return self.low <= self.high
 
 
 @dataclass(frozen=True, slots=True)

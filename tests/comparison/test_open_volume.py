@@ -10,6 +10,8 @@ import pytest
 
 from gearwear.comparison.open_volume import Open, OpenVolume
 from gearwear.design.side import Side
+from gearwear.wear.tooth_summary import DriftSeam
+from tests.placing.placing import designed
 
 TEETH, ROWS, ROW = 20, 10, 2.0
 """A row of a flank is 2 mm², so all flanks of a side are 20 · 10 · 2 = 400 mm²."""
@@ -33,6 +35,35 @@ def test_evenly_over_a_side_it_is_the_range_over_its_area():
     """22 to 50 mm³ about 30 over 400 mm²: 20 µm less, 50 µm more."""
     below, above = opened([(22.0 + 1.96, 1.0), (50.0 - 1.96, 1.0)]).evenly
     assert (below, above) == (pytest.approx(0.020, rel=1e-3), pytest.approx(0.050, rel=1e-3))
+
+
+WORN = [
+    SimpleNamespace(tooth=4, side=Side.LEFT, volume=2.0, area=20.0),
+    SimpleNamespace(tooth=7, side=Side.LEFT, volume=28.0, area=20.0),
+]
+"""2 and 28 mm³ on two flanks of 20 mm²: 0.1 and 1.4 mm deep."""
+
+
+@pytest.mark.parametrize(
+    ("tooth", "depth", "before", "range_"),
+    [
+        (4, 0.06, False, (30.0 - 0.98 - 1.2, 30.98)),  # a part of its depth
+        (4, 0.20, False, (30.0 - 0.98 - 2.0, 30.98)),  # all of it: no more than was found
+        (7, -0.06, False, (29.02, 30.0 + 0.98 + 1.2)),  # told too thick, it has lost more
+        (4, 0.02, False, None),  # 0.4 mm³ is within 0.5
+        (5, 0.20, False, None),  # of a tooth that is not worn nothing is open
+        (4, 0.20, True, None),  # before wear its pitch stepped there as well
+    ],
+)
+def test_of_a_worn_tooth_in_which_the_scan_may_have_begun_the_closure_is_open(tooth, depth, before, range_):
+    """A closure that is so deep on one flank, along its normal; of a spur gear at the reference circle depth is arc times cos α."""
+    gear = designed()
+    open_ = opened([], regions=WORN)
+    open_.measured.gear = gear
+    seam = DriftSeam(tooth, depth / math.cos(math.radians(20.0)))
+    open_ = OpenVolume(open_.measured, open_.found, (), before, seam)
+    assert (None if open_.of_such_teeth is None else open_.of_such_teeth[:2]) == (range_ and pytest.approx(range_, abs=1e-9))
+    assert [part.what for part in open_.causes] == ([Open.SEAM] if range_ else [])
 
 
 @pytest.mark.parametrize("undecided", [(), [(30.2, 0.2)]])

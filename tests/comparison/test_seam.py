@@ -80,8 +80,10 @@ def test_a_seam_in_a_gap_makes_no_tooth_thinner():
     assert told_so.thinnest().low < gear.tooth_thickness < told_so.thinnest().high
 
 
-def test_a_seam_in_a_tooth_that_is_not_the_thinnest_changes_nothing():
+def test_a_seam_in_a_tooth_that_is_not_the_thinnest_changes_no_interval():
     """Of another tooth 0.1 mm is gone: it is the thinnest, drift or not."""
     gear, told_so, _ = told(TOOTH)
     worn = replace(told_so, arc=told_so.arc - 0.1 * (np.arange(gear.teeth) == TOOTH + 4)[:, None])
-    assert with_seam(found_with(TOOTH), worn) is worn
+    either = with_seam(found_with(TOOTH), worn)
+    assert either.thinnest() == worn.thinnest() and either.teeth() == worn.teeth()
+    assert either.seam.tooth == TOOTH and not either.seam.of_thinnest

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gearwear.comparison.open_volume import Open
 from gearwear.design.gear import Gear
 from gearwear.design.modification import FlankModification
 from gearwear.design.quantity import MISSING, SPACE, number, teeth_words, with_std
@@ -24,6 +25,7 @@ from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
+from gearwear.report.words.lost import QUESTIONS
 from gearwear.report.words.numbers import effect_title, quantity, which_flanks
 from gearwear.report.words.other_design import other_angles, wrong_design
 from gearwear.report.words.verdict import (
@@ -452,3 +454,8 @@ def test_the_deepest_place_is_an_interval_where_more_than_its_deviation_is_open(
     (region,) = fake_regions()[:1]
     results = SimpleNamespace(open_volume=SimpleNamespace(depth_limits=lambda one: limits if one is region else None))
     assert deepest_range(results, region).replace(SPACE, " ") == told
+
+
+def test_every_cause_of_an_open_volume_has_words():
+    """Wear too faint to be found alone is told otherwise."""
+    assert set(QUESTIONS) == set(Open) - {Open.FAINT}

@@ -26,6 +26,7 @@ QUESTIONS = {
     Open.VIEWS: ("how much of that is views that lie apart", "views that lie apart"),
     Open.UNSURE: ("how much the flanks that look worn have lost", "loss of flanks that look worn"),
     Open.RIDGE: ("how high the worn flanks stood as they were made", "cut thicker or a ridge"),
+    Open.SEAM: ("whether pitch errors that step in a worn tooth are a drift of the scan", "pitch errors or a drift of the scan"),
     Open.UNSEEN: ("how much is missing where no worn flank was seen", "worn flanks not seen whole"),
     Open.PITS: ("how many pits or grooves other flanks have", "pits on other flanks"),
 }
