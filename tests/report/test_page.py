@@ -7,7 +7,6 @@ import hashlib
 import io
 import json
 import re
-from contextlib import nullcontext
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,7 +16,6 @@ import pytest
 from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.figure import Figure
-from matplotlib.textpath import TextToPath
 from PIL import Image
 
 from gearwear.comparison.contact_readings import ReadOtherwise
@@ -25,7 +23,7 @@ from gearwear.design.quantity import with_std
 from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report import figures
-from gearwear.report.page import blocks, view
+from gearwear.report.page import svg, view
 from gearwear.report.page.view import page, write_html
 from tests.report.fake import bare_results, changed, fake_arrays, fake_results, open_contact
 
@@ -72,7 +70,7 @@ def full():
 @pytest.fixture
 def little(monkeypatch):
     """Arrays without anything that may be missing, and nothing rendered: for tests of the words."""
-    monkeypatch.setattr(blocks, "svg", lambda figure, ident, trim=True: Markup("<svg></svg>"))
+    monkeypatch.setattr(svg, "svg", lambda figure, ident, trim=True: Markup("<svg></svg>"))
     nothing = dict.fromkeys(("residual_before_um", "residual_after_um", "elsewhere", "meshing", "contact_share"))
     return replace(fake_arrays(columns=12, planar=True), **nothing)
 
@@ -289,7 +287,7 @@ def test_what_is_spared_in_a_drawing_is_not_seen():
     own = io.StringIO()
     with rc_context(figures.STYLE):
         figure.savefig(own, format="svg", transparent=True)
-    written, spared = own.getvalue(), str(blocks.svg(figure, "x", trim=False))
+    written, spared = own.getvalue(), str(svg.svg(figure, "x", trim=False))
     assert len(spared) < 0.8 * len(written)
     assert "L 1.23456 2.34567" in spared
 
@@ -311,24 +309,3 @@ def test_what_is_spared_in_a_drawing_is_not_seen():
 def test_the_same_input_gives_the_same_bytes(tmp_path, full):
     write_html(tmp_path / "report.html", view.view_of(fake_results(), fake_arrays(), FILES))
     assert (tmp_path / "report.html").read_text("utf-8") == full
-
-
-def test_a_text_is_measured_once_and_the_picture_is_the_same(monkeypatch):
-    measured, own = [], TextToPath.get_text_width_height_descent
-
-    def counted(self, s, prop, ismath):
-        measured.append((s, prop.get_size(), ismath))
-        return own(self, s, prop, ismath)
-
-    def drawn():
-        with rc_context(figures.STYLE):
-            figure = Figure(figsize=(4, 3))
-            figure.add_subplot(xlabel="depth [$\\mu$m]", title="of all flanks").plot([0.0, 30.0], [1.0, 2.0])
-        return blocks.svg(figure, "one")
-
-    monkeypatch.setattr(TextToPath, "get_text_width_height_descent", counted)
-    written, once = drawn(), len(measured)
-    assert once == len(set(measured)) > 10
-    assert TextToPath.get_text_width_height_descent is counted
-    monkeypatch.setattr(blocks, "_measured_once", nullcontext)
-    assert drawn() == written and len(measured) > 2 * once

@@ -9,6 +9,7 @@ import numpy as np
 from gearwear.loaded.study import LoadedStudy
 from gearwear.report.figures.colours import BLUE, MUTED, ORANGE
 from gearwear.report.figures.legend import legend_above
+from gearwear.report.figures.maps import shade_bar
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,6 +54,6 @@ def load_map(axis: Axes, study: LoadedStudy) -> Axes:
     edges = np.concatenate([np.insert(low, groove, high[groove - 1]), high[-1:]])
     values = np.insert(flanks.values.mean(axis=0), groove, np.nan, axis=1)
     shown = axis.pcolormesh(flanks.roll_edges, edges, values.T, cmap="viridis", vmin=0.0, shading="flat")
-    axis.figure.colorbar(shown, ax=axis, label="load, N/mm")
+    shade_bar(axis.inset_axes((1.04, 0.0, 0.04, 1.0)), "viridis", *shown.get_clim(), "load, N/mm")
     axis.set(xlabel="length of roll of the pinion, mm", ylabel="z, mm")
     return axis

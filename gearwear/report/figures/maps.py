@@ -32,6 +32,9 @@ STYLE: dict[Any, Any] = {
 """matplotlib settings for all figures of the report (`matplotlib.rc_context(STYLE)`)."""
 
 
+SHADES = 256
+"""Colours of a bar."""
+
 WHISKER = 2.0
 """Standard deviations that a whisker of the least thickness reaches."""
 
@@ -125,22 +128,33 @@ def colours() -> Colormap:
     return LinearSegmentedColormap.from_list("deviation", list(DIVERGING))
 
 
+def shade_bar(axis: Axes, shades: str | Colormap, low: float, high: float, label: str) -> Axes:
+    """Draw a scale of colours upright on `axis`, its ticks on the right.
+
+    A picture of one column: a bar of matplotlib's draws each of its colours by itself, in ten times as long.
+    """
+    axis.imshow(
+        np.linspace(0.0, 1.0, SHADES)[:, None], cmap=shades, origin="lower", extent=(0.0, 1.0, low, high), interpolation="none", aspect="auto"
+    )  # fmt: skip
+    axis.set_xticks([])
+    axis.set_ylabel(label)
+    axis.tick_params(length=2, labelsize=8, left=False, right=True, labelleft=False, labelright=True)
+    axis.yaxis.set_label_position("right")
+    axis.spines[:].set_visible(True)
+    return axis
+
+
 def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ too much, − missing)", high: float = 1.0) -> Axes:
     """Draw the legend of the signed scale on `axis`, up to `high` on it; 0: of depths, which have no sign."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
-    bar = axis.figure.colorbar(ScalarMappable(Normalize(-1.0, 1.0), colours()), cax=axis)
+    shade_bar(axis, colours(), -1.0, 1.0, label)
     ticks = [
         (at, text)
         for at, text in zip(scale.fraction(np.array(scale.ticks_um)).tolist(), scale.tick_labels, strict=True)
         if at <= high
     ]
-    bar.set_ticks([at for at, _ in ticks], labels=[text if high > 0.0 else text.lstrip("−") for _, text in ticks])
-    bar.set_label(label)
+    axis.set_yticks([at for at, _ in ticks], [text if high > 0.0 else text.lstrip("−") for _, text in ticks])
     axis.set_ylim(-1.0, high)
-    bar.outline.set_visible(False)
-    axis.tick_params(length=2, labelsize=8)
+    axis.spines[:].set_visible(False)
     return axis
 
 

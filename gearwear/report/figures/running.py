@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearwear.report.figures.maps import shade_bar
 from gearwear.running.found import SecondLoop
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def wear_maps(axes: Sequence[Axes], loop: SecondLoop) -> None:
     for axis, (title, values) in zip(axes, maps, strict=True):
         field = np.full(place.seen.shape, np.nan)
         field[place.seen] = 1e3 * values
-        shown = axis.pcolormesh(place.roll_edges, heights, field, cmap="viridis", vmin=0.0, vmax=top, shading="flat")
+        axis.pcolormesh(place.roll_edges, heights, field, cmap="viridis", vmin=0.0, vmax=top, shading="flat")
         axis.set(xlabel="length of roll, mm", title=title)
     axes[0].set_ylabel("z, mm")
-    axes[0].figure.colorbar(shown, ax=list(axes), label="depth, µm", pad=0.015)
+    shade_bar(axes[-1].inset_axes((1.05, 0.0, 0.06, 1.0)), "viridis", 0.0, top, "depth, µm")

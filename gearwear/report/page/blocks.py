@@ -4,36 +4,15 @@ from __future__ import annotations
 
 import base64
 import io
-import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
 from markupsafe import Markup
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-FULL = 10.2
-"""Inches that fill the width of the page: type comes out at one size in all figures."""
-
-_SPARED = (
-    (re.compile(r"font-family: [^;]*; "), ""),  # the page has its own
-    (re.compile(r' transform="rotate\(-0 [^)]*\)"'), ""),
-    (re.compile(r'<g id="[^"]*text_\d+">\s*(<text[^>]*>[^<]*</text>)\s*</g>'), r"\1"),
-    (re.compile(r'( [xy]="-?\d+\.\d\d)\d+'), r"\1"),
-)
-"""What matplotlib writes that nobody sees: fonts of each word, turns by nothing, groups of one, and more than hundredths of a point."""
-
-_LINES = re.compile(r' d="((?:[ML] -?[\d.]+ -?[\d.]+ \n|z\n)+)"')
-"""A path of straight lines, as matplotlib writes it."""
-
-_IMAGE = re.compile(r"(?<=data:image/png;base64,)[A-Za-z0-9+/=\s]+")
-"""An image, as matplotlib writes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +96,8 @@ class Picture:
 
     def svg(self) -> Markup:
         """The same for the page."""
+        from gearwear.report.page.svg import svg
+
         return svg(self.figure(), self.ident, self.trim)
 
 
@@ -171,79 +152,6 @@ def pictures_of(given: Iterable[Block]) -> list[Picture]:
         elif isinstance(block, Columns):
             pictures += pictures_of(chain(*block.columns))
     return pictures
-
-
-def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:
-    """Inline SVG with text as text, identifiers of its own, and no date in it."""
-    from matplotlib import rc_context
-    from matplotlib.backends.backend_svg import FigureCanvasSVG
-
-    from gearwear.report.figures import STYLE
-
-    buffer, dpi = io.StringIO(), figure.dpi
-    blank = {"Date": None, "Creator": None, "Format": None, "Type": None}
-    with rc_context(STYLE), _measured_once():
-        FigureCanvasSVG(figure)  # measures type as it will write it
-        # matplotlib's own "tight" draws everything once more to find this box.
-        box = figure.get_tightbbox().padded(0.04) if trim else None
-        figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches=box, dpi=dpi)
-    text = buffer.getvalue()
-    text = text[text.index("<svg") :]
-    for mark in (' id="', "url(#", 'href="#'):
-        text = text.replace(mark, f"{mark}{ident}-")
-    for written, spared in _SPARED:
-        text = written.sub(spared, text)
-    text = _IMAGE.sub(lambda image: _by_palette(image[0]), _LINES.sub(_step_by_step, text))
-    size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', text)
-    assert size is not None
-    share = min(100.0, 100.0 * float(size[1]) / (72.0 * FULL))
-    return Markup(
-        text.replace(size[0], f'style="width:{share:.1f}%;height:auto;--natural:{float(size[1]) * 96.0 / 72.0:.0f}px"', 1)
-    )  # matplotlib escapes what it writes
-
-
-@contextmanager
-def _measured_once() -> Iterator[None]:
-    """In the body a text is measured for the file once, and not for the box round all and again for the drawing."""
-    from matplotlib.textpath import TextToPath
-
-    measure = TextToPath.get_text_width_height_descent
-    known = cache(partial(measure, TextToPath()))
-    TextToPath.get_text_width_height_descent = lambda self, s, prop, ismath: known(s, prop.copy(), ismath)  # type: ignore[method-assign]
-    try:
-        yield
-    finally:
-        TextToPath.get_text_width_height_descent = measure  # type: ignore[method-assign]
-
-
-def _by_palette(image: str) -> str:
-    """An image of few colours as numbers of them: a map is half as large, its pixels are the same."""
-    from PIL import Image
-
-    pixels = np.asarray(Image.open(io.BytesIO(base64.b64decode(image))).convert("RGBA"))
-    whole, number = np.unique(
-        pixels.view("<u4"), return_inverse=True
-    )  # a colour as one number: rows would take ten times as long
-    if len(whole) > 256:
-        return image
-    colours = whole[:, None].view(np.uint8)
-    picture = Image.fromarray(number.reshape(pixels.shape[:2]).astype(np.uint8))
-    picture.putpalette(colours[:, :3].tobytes())
-    buffer = io.BytesIO()
-    picture.save(buffer, format="png", transparency=colours[:, 3].tobytes())
-    return base64.b64encode(buffer.getvalue()).decode("ascii")
-
-
-def _step_by_step(path: re.Match[str]) -> str:
-    """A path of straight lines in steps of whole hundredths of a point: half of the text."""
-    written = []
-    for part in path[1].split("M")[1:]:
-        closed = "z" in part
-        corners = np.array(part.replace("L", " ").replace("z", " ").split(), dtype=np.float64).reshape(-1, 2)
-        steps = np.diff(np.rint(100.0 * corners), axis=0, prepend=0.0)
-        first, *others = (" ".join(f"{value:.8g}" for value in step) for step in (0.01 * steps).tolist())
-        written.append(f"M{first}{'l' if others else ''}{' '.join(others)}{'z' if closed else ''}")
-    return f' d="{"".join(written)}"'
 
 
 def extent(figure: Figure, trim: bool = True) -> Any:

@@ -18,8 +18,10 @@ from gearwear.loaded.study import LoadedStudy
 from gearwear.report import figures
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 from gearwear.report.figures.colours import BLUE, TEAL, ColourScale, colour_scale
+from gearwear.report.figures.maps import shade_bar
 from gearwear.report.figures.surfaces import section
-from gearwear.report.page.blocks import FULL, Picture
+from gearwear.report.page.blocks import Picture
+from gearwear.report.page.svg import FULL
 from gearwear.running.found import SecondLoop
 from gearwear.wear.regions import WearRegion
 from gearwear.wear.thickness import SectionThickness
@@ -201,11 +203,11 @@ def contact_pattern(share: Floats) -> Picture:
     """Where the flanks are touched."""
 
     def draw() -> Figure:
-        figure, axis, bar_axis = _wide(share.shape[0])
+        figure, axis, bar = _wide(share.shape[0])
         figures.contact_map(axis, share)
-        bar = figure.colorbar(axis.images[-1], cax=bar_axis)
-        bar.set_ticks([0.0, 0.5, 1.0], labels=["never", "half", "always"])
-        bar.set_label("share of passings with contact")
+        shade_bar(bar, "Blues", 0.0, 1.0, "share of passings with contact").set_yticks(
+            [0.0, 0.5, 1.0], ["never", "half", "always"]
+        )
         return figure
 
     return Picture(
