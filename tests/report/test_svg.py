@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from gearwear.report.figures import STYLE
-from gearwear.report.page.svg import MARGIN, Letters, svg
+from gearwear.report.page.svg import MARGIN, Letters, Pen, svg
 
 SPACE = "{http://www.w3.org/2000/svg}"
 
@@ -151,3 +151,13 @@ def test_letters_are_as_wide_as_matplotlib_shapes_them():
         np.testing.assert_allclose(
             Letters(findfont(prop)).size(text, 8.5), text_to_path.get_text_width_height_descent(text, prop, False), atol=0.03
         )
+
+
+def test_lines_are_as_high_as_matplotlib_reads_in_the_font(monkeypatch):
+    own = str(svg(figure_of(words), "x"))
+    with monkeypatch.context() as without:
+        without.delattr(Pen, "_get_font_height_metrics")
+        assert str(svg(figure_of(words), "x")) == own
+    # A font without the table: matplotlib measures.
+    monkeypatch.setattr(Pen, "_get_font_height_metrics", lambda self, prop: (None, None, None))
+    assert str(svg(figure_of(words), "x")) == own

@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 STYLE: dict[Any, Any] = {
     "font.family": ["sans-serif"], "font.size": 8.5, "svg.fonttype": "none", "svg.hashsalt": "gearwear", "pdf.fonttype": 42,
     "axes.edgecolor": MUTED, "axes.labelcolor": INK, "axes.linewidth": 0.6, "axes.titlesize": 8.5, "axes.titleweight": "bold",
-    "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
+    "axes.titlelocation": "left", "axes.titley": 1.0, "axes.spines.top": False, "axes.spines.right": False,
     "xtick.color": MUTED, "ytick.color": MUTED, "xtick.labelcolor": INK, "ytick.labelcolor": INK,
     "xtick.major.width": 0.6, "ytick.major.width": 0.6, "grid.color": RULE, "grid.linewidth": 0.5,
     "legend.frameon": False, "legend.fontsize": 8.0, "hatch.linewidth": 0.6, "hatch.color": "#8d949b", "lines.linewidth": 1.2,
 }  # fmt: skip
-"""matplotlib settings for all figures of the report (`matplotlib.rc_context(STYLE)`)."""
+"""matplotlib settings for all figures of the report (`matplotlib.rc_context(STYLE)`). Titles have their height: to search for one takes as long as to draw them."""
 
 
 SHADES = 256

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import math
-from typing import Any
+from typing import Any, cast
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -153,9 +153,17 @@ class Pen(RendererBase):
     def get_text_width_height_descent(self, s: str, prop: FontProperties, ismath: Any) -> tuple[float, float, float]:
         if ismath:
             return text_to_path.get_text_width_height_descent(s, prop, ismath)
+        return self._letters_of(prop).size(s, prop.get_size_in_points())
+
+    def _get_font_height_metrics(self, prop: FontProperties) -> tuple[float | None, ...]:
+        """Ascent, descent and gap of lines: where a renderer knows them, matplotlib does not read the font's tables for every text."""
+        points, lines = prop.get_size_in_points(), self._letters_of(prop).lines
+        return (points * lines[0], -points * lines[1], points * lines[2]) if lines else (None, None, None)
+
+    def _letters_of(self, prop: FontProperties) -> Letters:
         if prop not in self._letters:
             self._letters[prop.copy()] = Letters(findfont(prop))
-        return self._letters[prop].size(s, prop.get_size_in_points())
+        return self._letters[prop]
 
     def get_canvas_width_height(self) -> tuple[float, float]:
         return self.width, self.height
@@ -237,7 +245,9 @@ class Letters(dict[str, tuple[float, float, float]]):
 
     def __init__(self, file: str) -> None:
         super().__init__()
-        self.font = get_font(file)
+        self.font = cast(Any, get_font(file))
+        told, names = self.font.get_sfnt_table("OS/2"), ("sTypoAscender", "sTypoDescender", "sTypoLineGap")
+        self.lines = () if told is None else tuple(told[name] / self.font.get_sfnt_table("head")["unitsPerEm"] for name in names)
 
     def __missing__(self, letter: str) -> tuple[float, float, float]:
         self.font.set_size(LARGE, 72.0)
