@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 from gearwear.design.gear import Gear
 from gearwear.design.pair import reached_roll, tip_penetration
@@ -73,14 +72,9 @@ def closest_centre_distance(pinion: Gear, gear: Gear) -> float:
     >>> round(bottoming_centre_distance(pinion, gear), 3), round(closest_centre_distance(pinion, gear), 3)
     (112.712, 113.053)
     """
-
     refuse(pinion, "the closest centre distance", Toothing.INTERNAL)
     refuse(gear, "the closest centre distance", Toothing.INTERNAL)
-    return _closest(pinion, gear)
 
-
-@lru_cache(maxsize=16)  # of a pair, whatever it lost: a tenth of the time of a whole study
-def _closest(pinion: Gear, gear: Gear) -> float:
     def digs(distance: float) -> bool:
         return max(tip_penetration(pinion, gear, distance), tip_penetration(gear, pinion, distance)) > ROUNDING
 
