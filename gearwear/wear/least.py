@@ -265,8 +265,10 @@ def _sums(values: Floats, width: int) -> Floats:
 
 @lru_cache(maxsize=2)
 def _unit(shape: tuple[int, int]) -> Floats:
-    """(2, `DRAWS`, rows, columns) draws from N(0, 1), the same for all surfaces of one shape."""
-    return np.random.default_rng(0).normal(size=(2, DRAWS, *shape))
+    """(2, `DRAWS`, rows, columns) draws from N(0, 1), read-only, the same for all surfaces of one shape."""
+    draws = np.random.default_rng(0).normal(size=(2, DRAWS, *shape))
+    draws.setflags(write=False)
+    return draws
 
 
 @lru_cache(maxsize=2)
@@ -275,7 +277,9 @@ def _correlated(shape: tuple[int, int], steps: tuple[float, float], window: tupl
     surfaces of one shape."""
     along, across = (_root(step, number) for step, number in zip(steps, shape, strict=True))
     long = along @ _unit(shape)[1] @ across.T
-    return _over_windows(np.concatenate([long, long[:, ::-1]]), window)
+    means = _over_windows(np.concatenate([long, long[:, ::-1]]), window)
+    means.setflags(write=False)
+    return means
 
 
 def _root(step: float, number: int) -> Floats:

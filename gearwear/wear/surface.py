@@ -283,8 +283,10 @@ def _mean(ways: Sequence[_AsStiff], values: Sequence[Floats]) -> Floats:
 
 @lru_cache(maxsize=2)
 def _random(number: int) -> Floats:
-    """(number, `DRAWS` / 2) draws from N(0, 1), the same for all surfaces of one size."""
-    return np.random.default_rng(0).normal(size=(number, DRAWS // 2))
+    """(number, `DRAWS` / 2) draws from N(0, 1), read-only, the same for all surfaces of one size."""
+    draws = np.random.default_rng(0).normal(size=(number, DRAWS // 2))
+    draws.setflags(write=False)
+    return draws
 
 
 def _from_other_end(shape: tuple[int, ...]) -> Ints:

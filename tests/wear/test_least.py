@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from gearwear.wear.least import least_mean, least_of_curves, places, unmixed
+from gearwear.wear.least import _correlated, _unit, least_mean, least_of_curves, places, unmixed
+from gearwear.wear.surface import _random
 
 NOISE = 0.004
 TEETH, SECTIONS, SCANS = 20, 30, 40
@@ -131,3 +132,10 @@ def test_the_least_mean_of_a_surface_upside_down_is_the_same():
     for window in ((1, 1), (2, 2), (3, 3)):
         way, turned = (least_mean(value[::step], where[::step], std[::step], window, 0.01, (0.5, 0.5)) for step in (1, -1))
         assert way == pytest.approx(turned, rel=1e-9)
+
+
+@pytest.mark.parametrize("kept", [lambda: _unit((3, 4)), lambda: _correlated((3, 4), (0.5, 0.5), (2, 2)), lambda: _random(5)])
+def test_draws_that_surfaces_share_nobody_can_change(kept):
+    assert kept() is kept()
+    with pytest.raises(ValueError, match="read-only"):
+        kept()[0] += 1.0
