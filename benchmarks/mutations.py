@@ -314,6 +314,8 @@ MUTATIONS = [
         ("wear/thickness.py", "high = min(low, self.seam.low), max(high, self.seam.high)", "high = low, high", "comparison/test_seam.py"),
         ("report/words/other_design.py", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.4", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.25", "report/test_words.py"),
         ("report/words/verdict.py", "LOPSIDED = 4.0", "LOPSIDED = 2.0", "report/test_words.py"),
+        ("placing/tooth_count.py", "MORE_OFTEN = 1.2", "MORE_OFTEN = 0.5", "placing/test_tooth_count.py"),
+        ("placing/tooth_count.py", "LEAST_TEETH_SEEN = 0.5", "LEAST_TEETH_SEEN = 1.1", "placing/test_tooth_count.py"),
         ("placing/refusal.py", "LEAST_FLANK = 100", "LEAST_FLANK = 10", "placing/test_refusal.py placing/test_belonging.py"),
         ("placing/refusal.py", "SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12", "SAME_WIDTH, OTHER_WIDTH = 0.1, 0.12", "placing/test_surroundings.py"),
         ("placing/smoothing.py", "PATCH_POINTS = 16", "PATCH_POINTS = 400", "placing/test_smoothing.py"),

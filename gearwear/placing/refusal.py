@@ -13,6 +13,7 @@ from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
 from gearwear.design.twist import drawn_height, helix_words, normal_loss, segments, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.screw import fine_sample, normal_twist
+from gearwear.placing.tooth_count import other_count
 from gearwear.placing.views import PlacedScan
 from gearwear.robust import median_scale, some_of
 
@@ -124,6 +125,9 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
     fitting, off, m = placed.registration.fitting, flanks_off(points), gear.transverse_module
     lands = float(np.isin(points.surface, (TIP, ROOT)).mean())
     planar = not placed.registration.observed[3:5].any()  # no tilt can be seen in it
+    if counted := other_count(untwisted(gear, _some(placed.measured, gear))[:, :2], gear):
+        reason = f"{counted} teeth are counted in it, and the design has {gear.teeth}"
+        raise NotThisGear(placed.measured, planar, f"{_not_this(reason)}; gearwear design SCAN proposes a design")
     one_sided = min(int((flank & (points.side == side)).sum()) for side in (1, -1)) < 0.02 * flanks
     one_sided &= 2 * len(np.unique(points.tooth[flank])) > gear.teeth
     if one_sided and off.distance > MAX_DISTANCE_MODULES * m:
