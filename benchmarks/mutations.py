@@ -48,6 +48,10 @@ MUTATIONS = [
         ("design/twist.py", "arc * gear.base_radius / gear.reference_radius", "arc", "placing/test_refusal.py"),
         # scans the wrong way round
         ("comparison/notes.py", "<= GROWN * math.hypot", "> GROWN * math.hypot", "comparison/test_before.py"),
+        ("comparison/before.py", "variance, both & ~flank)", "variance, both)", "comparison/test_before.py"),
+        ("comparison/before.py", "(flank & np.isin(on.side, worn))", "(flank & False)", "comparison/test_before.py"),
+        ("comparison/before.py", "if np.isin(on.surface[both], (TIP, ROOT, BORE)).any():", "if True:", "comparison/test_before.py"),
+        ("diagnose/found.py", "return Kind.FORM if effect.candidate.effect.as_made", "return Kind.FORM if False and effect.candidate.effect.as_made", "diagnose/test_edge_rounding.py"),
         ("comparison/before.py", "changed.with_deviation(-changed", "changed.with_deviation(changed", "comparison/test_before.py"),
         # reliefs that meet
         ("diagnose/side_costs.py", "gear.orientation * (tip[0] - root[0])", "(root[0] - tip[0])", "diagnose/core/test_worn_sides.py"),

@@ -6,7 +6,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 
-TUKEY = 4.685
+TUKEY, HUBER = 4.685, 1.345
 """95 % efficiency on normal data (Huber & Ronchetti 2009)."""
 
 
@@ -48,6 +48,11 @@ def tukey_weight(residual: Floats, scale: float) -> Floats:
     inside = np.abs(ratio) < 1.0  # False for nan
     weight: Floats = np.where(inside, (1.0 - np.where(inside, ratio, 0.0) ** 2) ** 2, 0.0)
     return weight
+
+
+def huber_weight(residual: Floats, scale: float) -> Floats:
+    """Huber's weight, 1 as far as 1.345 s and 1.345 s / |r| beyond: convex, so that what it finds hangs on no start."""
+    return np.asarray(1.0 / np.maximum(np.abs(residual) / (HUBER * max(scale, 1e-300)), 1.0))
 
 
 def tukey_slope(residual: Floats, scale: float) -> Floats:

@@ -9,20 +9,26 @@ from pathlib import Path
 
 import numpy as np
 
+from gearwear.arrays import Bools, Floats
 from gearwear.comparison.closing import find_effects
 from gearwear.comparison.measured_gear import MeasuredGear, laid, register
 from gearwear.comparison.same_teeth import SameTeeth, same_teeth
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
+from gearwear.design.surface import BORE, FLANK, ROOT, TIP
 from gearwear.diagnose.no_datum import leaves_a_datum
 from gearwear.diagnose.rules import rules
 from gearwear.errors import InputError
 from gearwear.placing.cells import Cells
-from gearwear.robust import median_scale
+from gearwear.placing.least_squares import solved
+from gearwear.placing.pose import motion_columns
+from gearwear.robust import huber_weight, median_scale, scale_about
 from gearwear.scan.reading import check_different, read_scan
 from gearwear.scan.types import Scan
 from gearwear.wear.regions import Wear, find_wear
 
+ROUNDS = 8
+"""Of a robust fit, until its weights stay; numerical."""
 MOST_ROUNDS = 3
 """Of the loop, until the sides that changed are those it left out; numerical."""
 
@@ -47,10 +53,41 @@ def unworn_gear(
 
 def what_changed(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
     """What changed from before to after. What both scans share is design, manufacture and scanner; each scan's own measurement
-    effects are taken out first. Where the unworn gear was not seen, the effects found in the worn one stand in for it."""
+    effects are taken out first, and then what of the difference a motion, a coat and a scale explain. Where the unworn gear was not seen, the effects found in the worn one
+    stand in for it."""
     corrected, before = after.corrected, unworn.corrected.points.deviation
     changed = corrected.points.deviation - before
+    changed -= _measured_otherwise(corrected, changed, after, unworn)
     return corrected.with_deviation(np.where(np.isfinite(before), changed, after.as_made.points.deviation))
+
+
+def _measured_otherwise(cells: Cells, changed: Floats, after: MeasuredGear, unworn: MeasuredGear) -> Floats:
+    """What of the difference (m,), mm, is how the worn gear was measured and placed: a coat and a scale, as what is no flank has them, and then a motion.
+
+    Each scan was placed by what it shows, and an unworn gear by the flanks of both sides: how these were cut against one another turned it by what it turns no gear of
+    which one side is worn; and a coat that one scan alone takes for thick teeth is none of these beside the other. In the difference nothing is left of how the gear was made.
+    Flanks of sides worn throughout tell nothing. Of others Huber's weights hold what wore back, and let no side go: an even loss of both is a turn to neither.
+    """
+    on = cells.points
+    both, flank = np.isfinite(changed), on.surface == FLANK
+    variance = after.noise**2 / np.maximum(cells.count, 1.0) + unworn.noise**2 / np.maximum(unworn.cells.count, 1.0)
+    motion = motion_columns(on.position, on.normal)
+    found = np.zeros(len(changed))
+    # On flanks a coat is thicker teeth, and a loss of both sides a thinner coat.
+    if np.isin(on.surface[both], (TIP, ROOT, BORE)).any():
+        columns = np.column_stack([motion, np.ones(len(changed)), (on.position * on.normal).sum(axis=1)])
+        found += _robust(columns, changed, variance, both & ~flank)
+    worn = [int(side) for side in after.worn_sides | unworn.worn_sides]
+    return found + _robust(motion, changed - found, variance, both & ~(flank & np.isin(on.side, worn)))
+
+
+def _robust(columns: Floats, target: Floats, variance: Floats, tells: Bools) -> Floats:
+    """What some columns (m, p) explain of a target (m,) by the cells that tell, everywhere; fitted with Huber's weights."""
+    amounts = np.zeros(columns.shape[1])
+    for _ in range(ROUNDS):
+        left = (target[tells] - columns[tells] @ amounts) / np.sqrt(variance[tells])
+        amounts = solved(columns[tells], target[tells], huber_weight(left, scale_about(left)) / variance[tells])
+    return np.asarray(columns @ amounts)
 
 
 def told_by_both(after: MeasuredGear, unworn: MeasuredGear) -> tuple[MeasuredGear, frozenset[Side]]:

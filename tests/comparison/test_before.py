@@ -13,8 +13,11 @@ from gearwear.comparison.before import told_by_both, unworn_gear
 from gearwear.comparison.closing import measure
 from gearwear.comparison.stations import compare
 from gearwear.design.side import Side
+from gearwear.design.surface import FILLET, FLANK
+from gearwear.placing.pose import motion_columns
 from tests.commands.doors import ALONE, scan_file
 from tests.diagnose.plain import plain_effects
+from tests.report.fake import fake_results
 from tests.synthetic import AbrasiveWear, Effect, Recipe, SlidingWear
 
 PITCH = Effect("pitch", {"index_um": tuple(8.0 * np.sin(np.arange(12) ** 2))})
@@ -87,3 +90,53 @@ def test_a_difference_that_proves_little_does_not_take_back_what_the_worn_scan_t
     unworn = SimpleNamespace(noise=0.005, level_std=(0.0025, 0.0025))
     monkeypatch.setattr(before_wear, "what_changed", lambda *_: of(change))
     assert before_wear.sides_that_changed(after, unworn) == frozenset(sides)
+
+
+def scans_of(lost, worn, noise=0.004):
+    """Two scans of one gear of the bundled example's cells, as `what_changed` asks for them: the later moved, coated and larger, `lost` mm lower on its flanks;
+    the cells."""
+    cells = fake_results().measured.first
+    on = cells.points
+    rng = np.random.default_rng(5)
+    made = 0.01 * rng.standard_normal(len(cells.count))  # of no shape: it cancels
+    turned = motion_columns(on.position, on.normal) @ np.array([3e-3, -5e-3, 4e-3, 2e-5, -3e-5, 1e-4])
+    measured = turned + 0.006 + 2e-4 * (on.position * on.normal).sum(axis=1)
+
+    def seen(deviation):
+        scatter = noise * rng.standard_normal(len(made)) / np.sqrt(np.maximum(cells.count, 1.0))
+        corrected = cells.with_deviation(np.where(cells.seen, deviation + scatter, np.nan))
+        return SimpleNamespace(corrected=corrected, cells=cells, noise=noise, worn_sides=frozenset(worn), as_made=corrected)
+
+    return seen(made + measured - lost(on)), seen(made), cells
+
+
+@pytest.mark.parametrize(
+    ("lost", "worn"),
+    [
+        (lambda on: 0.03 * ((on.surface == FLANK) & (on.side > 0)), {Side.LEFT}),
+        (lambda on: 0.012 * (on.surface == FLANK), set()),  # of both sides, and neither is known to be worn
+        (lambda on: 0.1 * ((on.surface == FLANK) & (on.tooth == 3) & (on.position[:, 2] > 9.0)), set()),
+        (lambda on: np.zeros(len(on)), set()),
+    ],
+    ids=["one side", "both sides evenly", "part of a tooth", "nothing"],
+)
+def test_of_a_difference_is_left_what_is_lost_and_not_how_it_was_placed_and_measured(lost, worn):
+    """A motion, a coat and a scale are put in; what is taken out hangs on thousands of cells that scatter by 3 µm."""
+    after, unworn, cells = scans_of(lost, worn)
+    found = before_wear.what_changed(after, unworn).points.deviation
+    flank = cells.seen & (cells.points.surface == FLANK)
+    truth = -np.where(flank, np.nan_to_num(lost(cells.points)), 0.0)
+    left = (found - truth)[flank]
+    for side in Side:
+        own = left[cells.points.side[flank] == side]
+        assert abs(own.mean()) < 5e-4
+    assert abs(left.std() - np.sqrt(np.mean(2.0 * 0.004**2 / cells.count[flank]))) < 5e-4
+
+
+def test_without_tips_roots_and_bore_no_coat_is_taken_out():
+    """On flanks alone one of 6 µm is thicker teeth."""
+    after, unworn, cells = scans_of(lambda on: np.where(np.isin(on.surface, (FLANK, FILLET)), 0.0, np.nan), set())
+    found = before_wear.what_changed(after, unworn).points.deviation
+    flank = cells.seen & (cells.points.surface == FLANK)
+    scale = 2e-4 * (cells.points.position * cells.points.normal).sum(axis=1)
+    assert np.mean((found - scale)[flank]) == pytest.approx(0.006, abs=5e-4)

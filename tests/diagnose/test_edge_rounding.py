@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.surface import locate
+from gearwear.diagnose.effects.base import MADE, MEASURED
 from gearwear.diagnose.effects.edge_rounding import EFFECT
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.placing.cells import CellGrid, bin_points, noise
@@ -53,3 +54,6 @@ def test_beside_a_chamfer_edges_that_fall_off_are_as_they_were_cut(chamfer):
     low = cells.with_deviation(cells.points.deviation + falls)
     loop = close_loop(low, noise(low), about, (*PLAIN, EFFECT))
     assert [EFFECT.name in {one.name for one in told} for told in (loop.effects, loop.form)] == [not chamfer, bool(chamfer)]
+    points = cells.points.take(cells.seen)
+    deepest = [-float(loop.deviation(points, kinds).min()) for kinds in (MEASURED, MADE)]
+    assert [depth > 0.02 for depth in deepest] == [not chamfer, bool(chamfer)]
