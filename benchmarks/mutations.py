@@ -55,6 +55,7 @@ MUTATIONS = [
         ("comparison/before.py", "changed.with_deviation(-changed", "changed.with_deviation(changed", "comparison/test_before.py"),
         # reliefs that meet
         ("diagnose/side_costs.py", "gear.orientation * (tip[0] - root[0])", "(root[0] - tip[0])", "diagnose/core/test_worn_sides.py"),
+        ("diagnose/loop.py", "not_excluded += (both,) if meet else ()", "not_excluded += ()", "comparison/test_reliefs_that_meet.py"),
         ("diagnose/worn_sides.py", ", by_reliefs(model, problem))", ", 0.0)", "comparison/test_reliefs_that_meet.py"),
         # cells of a few teeth
         ("placing/cells.py", "LEAST_OF_TOOTH = 0.02", "LEAST_OF_TOOTH = 0.2", "placing/test_grid.py"),

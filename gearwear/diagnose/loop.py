@@ -35,7 +35,7 @@ from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
-from gearwear.diagnose.side_costs import NO_SIDE, SideCosts
+from gearwear.diagnose.side_costs import NO_SIDE, SideCosts, reliefs_meet
 from gearwear.diagnose.space_waves import SpaceWave, find_space_waves
 from gearwear.diagnose.told_by_wear import told_by_wear
 from gearwear.diagnose.untold import with_untold
@@ -205,7 +205,13 @@ def _closed(
     unheld -= taken.worn_sides
 
     def finished() -> Loop:
-        others = () if refuted else tuple(explained(sides) for sides in tenable.not_excluded)
+        not_excluded = tenable.not_excluded
+        both = frozenset(Side)
+        # Reliefs that meet are none of a worn side's other: it may have lost as much.
+        if len(taken.worn_sides) == 1 and both in tenable.by_sides and both not in not_excluded:
+            meet = reliefs_meet(tuple(effect.candidate for effect in (*taken.effects, *taken.form)), context.gear)
+            not_excluded += (both,) if meet else ()
+        others = () if refuted else tuple(explained(sides) for sides in not_excluded)
         named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
         named = or_worn(named, unheld, cells, taken.context)
         if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):

@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
+from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.diagnose.fit import Model
 from gearwear.diagnose.rules import rules
@@ -97,7 +98,11 @@ class SideCosts:
 def by_reliefs(model: Model, problem: Problem) -> float:
     """How uncommon, in cost, a model's tip and root relief are as they were cut: beyond all measure where they leave hardly anything of the flanks between them, as a
     mate that slides does; else 0."""
-    gear = problem.context.gear
+    return math.inf if reliefs_meet(model, problem.context.gear) else 0.0
+
+
+def reliefs_meet(model: Model, gear: Gear) -> bool:
+    """Whether a model's tip and root relief leave hardly anything of the flanks between them."""
     tip, root = ([one.shape[0] for one in model if one.name == f"{end}_relief"] for end in ("tip", "root"))
     least = rules().least_between * abs(gear.tip_roll - gear.form_roll)
-    return math.inf if tip and root and gear.orientation * (tip[0] - root[0]) < least else 0.0
+    return bool(tip and root) and gear.orientation * (tip[0] - root[0]) < least

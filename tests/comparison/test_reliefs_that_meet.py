@@ -6,9 +6,10 @@ import pytest
 
 from gearwear.comparison.stations import compare
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from tests.commands.doors import ALONE, scan_file
 from tests.placing.placing import designed
-from tests.synthetic import Effect, Recipe
+from tests.synthetic import Effect, Recipe, SlidingWear
 
 AMOUNT = 50.0
 
@@ -41,3 +42,16 @@ def test_the_loss_is_not_excluded_where_nothing_is_left_between_them(tmp_path, t
     lost = missing(gear, tip, root)
     assert (high > lost) == meet and high < 1.5 * lost
     assert all(("sliding_wear" in found[name].alternatives) == meet for name in ("tip_relief", "root_relief"))
+
+
+@pytest.mark.long
+def test_nor_is_that_of_the_other_side_of_one_that_is_worn(tmp_path):
+    """Both sides lack 50 µm at either end, and the left ones slid deeper: what both lack alike is told as reliefs, and may be wear."""
+    gear = designed()
+    made = tuple(Effect(f"{end}_relief", {"amount_um": AMOUNT, "start_mm": 13.0}) for end in ("tip", "root"))
+    recipe = Recipe(jitter=1.0, noise_um=5.0, effects=made, wear=(SlidingWear(120.0, 1),))
+    file, scan = scan_file(tmp_path, "scan", recipe.of_size(40_000), 3)
+    results = compare(ALONE, file, inspection=False)
+    assert {"tip_relief", "root_relief"} <= {effect.name for effect in results.effects}
+    assert results.measured.worn_sides == {Side.LEFT}
+    assert results.volume_range is not None and results.volume_range[1] > missing(gear, 13.0, 13.0) + 0.9 * scan.truth.volume_mm3
