@@ -17,11 +17,12 @@ from gearwear.comparison.seam import with_seam
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import MADE, MEASURED
 from gearwear.diagnose.found import Loop
+from gearwear.placing.cells import Cells
 from gearwear.wear.by_surfaces import surface_teeth
 from gearwear.wear.flank_arcs import worn_arcs
 from gearwear.wear.hollows import find_hollows, pitted
 from gearwear.wear.regions import Wear
-from gearwear.wear.section_sums import SectionSums
+from gearwear.wear.section_sums import SectionBand, SectionSums
 from gearwear.wear.thickness import SectionThickness, thickness_of
 from gearwear.wear.unmeasured import unmeasured_teeth
 
@@ -109,17 +110,29 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
         hollows=hollows,
         surfaces=surface_teeth(thickness.arc, thickness.as_made, arcs, measured.worn_sides, pits),
         unmeasured=unmeasured_teeth(thickness, wear, arcs),
-        pit_bottom=_pit_bottom(thickness, wear, pits),
+        pit_bottom=_pit_bottom(thickness, wear, pits, _at_radius(cells, wear, sections.band)),
     )
 
 
-def _pit_bottom(thickness: SectionThickness, wear: Wear, pits: Bools) -> float:
-    """`SectionThickness.pit_bottom` of teeth with `pits` (teeth,); inf where none has any."""
-    deepest = np.zeros(len(pits))
+def _at_radius(cells: Cells, wear: Wear, band: SectionBand) -> tuple[Bools, Floats]:
+    """Whether pits of each flank reach to where thickness is measured, and how deep cells of its wear are there, (teeth, 2), mm."""
+    grid = cells.grid
+    low, high = sorted(int(grid.flank_column(band.reach + half)) for half in (-band.half, band.half))
+    there = slice(grid.fillet + low, grid.fillet + high + 1)
+    hung: Bools = np.zeros(wear.mask.shape, dtype=np.bool_) if cells.far is None else grid.sides(cells.far.hung)
+    deep = np.where(wear.mask, wear.depth, 0.0)[..., there]
+    return np.asarray(hung[..., there].any(axis=(2, 3))), np.asarray(deep.max(axis=(2, 3)))
+
+
+def _pit_bottom(thickness: SectionThickness, wear: Wear, pits: Bools, there: tuple[Bools, Floats]) -> float:
+    """`SectionThickness.pit_bottom` of teeth with `pits` (teeth,); inf where none has any. Pits of a flank that do not reach to where thickness is measured,
+    as `_at_radius` says, take nothing off it: what else is worn there does."""
+    deepest = there[1].copy()
     for region in wear.regions:
-        if math.isfinite(region.max_depth):
-            deepest[region.tooth] += region.max_depth
-    left = thickness.as_made.min(axis=1) - thickness.turn * deepest
+        flank = region.tooth, region.side.index
+        if there[0][flank] and math.isfinite(region.max_depth):
+            deepest[flank] = region.max_depth
+    left = thickness.as_made.min(axis=1) - thickness.turn * deepest.sum(axis=1)
     return float(left[pits].min(initial=math.inf))
 
 
