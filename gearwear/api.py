@@ -188,9 +188,9 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
 
 def compare(
     design: Design | Name,
-    scans: Name | Scan | Sequence[Name | Scan],
+    scans: Name | Scan | Floats | Sequence[Name | Scan | Floats],
     part: str | None = None,
-    before: Name | Scan | Sequence[Name | Scan] = (),
+    before: Name | Scan | Floats | Sequence[Name | Scan | Floats] = (),
     units: str = "mm",
     loop: bool = True,
     inspection: bool = True,
@@ -203,11 +203,11 @@ def compare(
     Parameters
     ----------
     design : Design or path
-    scans : path, Scan or sequence of these
-        One scan, or several views of one gear: files, or what `read_scan` and `as_scan` give.
+    scans : path, Scan, (n, 3) float or sequence of these
+        One scan, or several views of one gear: files, what `read_scan` and `as_scan` give, or points in mm.
     part : {"pinion", "gear"} or None
         Which one was scanned; None: the one that fits.
-    before : path, Scan or sequence of these
+    before : path, Scan, (n, 3) float or sequence of these
         Scan of the same gear unworn, or its views.
     units : str
         Unit of the files; a `Scan` is in mm.
@@ -241,9 +241,10 @@ def compare(
         raise InputError(f"{error}{seems(error.points, error.planar)}") from None
 
 
-def _each(given: Name | Scan | Sequence[Name | Scan]) -> list[Any]:
-    """One or several as a list; what is none of these is refused where it is read."""
-    return list(given) if isinstance(given, Iterable) and not isinstance(given, str | np.ndarray) else [given]
+def _each(given: Name | Scan | Floats | Sequence[Name | Scan | Floats]) -> list[Any]:
+    """One or several as a list, points (n, 3) as scans; what is none of these is refused where it is read."""
+    several = list(given) if isinstance(given, Iterable) and not isinstance(given, str | np.ndarray) else [given]
+    return [as_scan(one) if isinstance(one, np.ndarray) else one for one in several]
 
 
 def write(

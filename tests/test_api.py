@@ -161,8 +161,8 @@ class TestStages:
         (lambda: gw.read_design({"gear": {"teeth": 12}}), "design of type dict: the path of a file would be right"),
         (lambda: gw.compare({"gear": {"teeth": 12}}, scanned()[1]), "design of type dict: the path of a file"),
         (lambda: gw.read_scan(["a.ply", "b.ply"]), "scan of type list: a file, or what gw.read_scan or gw.as_scan returns, would be right"),
-        (lambda: gw.compare(scanned()[0], np.ones((200, 3))), "scan of type ndarray: a file, or what gw.read_scan or gw.as_scan returns"),
-        (lambda: gw.compare(scanned()[0], [np.ones((200, 3))] * 2), "scan of type ndarray: a file"),
+        (lambda: gw.compare(scanned()[0], np.ones((200, 4))), r"points of shape \(200, 4\): \(n, 3\)"),
+        (lambda: gw.compare(scanned()[0], [3]), "scan of type int: a file"),
         (lambda: gw.compare(scanned()[0], None), "scan of type NoneType: a file"),
         (lambda: gw.find_effects(scanned()[0]), "measured of type Design: what gw.register returns would be right"),
         (lambda: gw.find_effects(real_results().measured, worn="left"), r"^worn 'left': a set of sides such as {gw.Side.LEFT} would be right"),
@@ -208,6 +208,11 @@ class TestStages:
         from_file, from_scan = (measure(design, [one], loop=False) for one in (file, scan))
         np.testing.assert_array_equal(from_scan.pose.translation, from_file.pose.translation)
         assert from_scan.scans[0].files == ("mine",)
+        drawn = {"design": design, "loop": False, "inspection": False}
+        by_array, by_scan = gw.compare(scans=scan.points, **drawn), gw.compare(scans=scan, **drawn)
+        np.testing.assert_array_equal(
+            by_array.measured.placed.registration.pose.translation, by_scan.measured.placed.registration.pose.translation
+        )
         halves = read_files([gw.as_scan(half) for half in np.array_split(scan.points, 2)])
         assert [set(half.view) for half in halves] == [{0}, {1}]
         for before in ((), gw.as_scan(scan.points)):

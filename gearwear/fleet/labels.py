@@ -76,7 +76,7 @@ def _span(span: Reach, unit: float, name: str) -> str:
 
     if math.isinf(span.value):
         if span.low == 0.0:
-            return "not by its line, perhaps at any time"
+            return "never if it goes on along its line, but it may be soon"
         return "not by its line" if math.isinf(span.low) else f"not before {end(span.low)}{name}"
     if span.low == 0.0 and math.isinf(span.high):
         return f"whether and when it reaches the limit is open (by its line in {end(span.value)}{name})"

@@ -14,7 +14,9 @@ from gearwear.design.side import Side
 from gearwear.meshing.path import path_of_contact
 from gearwear.report import figures
 from gearwear.report.records.wear_law import wear_law_record
+from gearwear.report.words.clauses import to_a_clause
 from gearwear.report.words.wear_law import far_words, forecast_rows, forecast_words, law_words, left_words
+from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import CyclesToLimit, WearStudy
 from tests.report.fake import fake_regions
 
@@ -115,3 +117,20 @@ def test_figures_draw_the_law_and_the_forecast():
     assert right.get_ylim()[0] <= 0.0
     labels = [line.get_label() for line in right.lines]
     assert "forecast" in labels and "limit" in labels
+
+
+@pytest.mark.parametrize(
+    ("lean", "end"), [(0.0288, "29\u202fµm deeper at the upper end"), (-0.0288, "29\u202fµm deeper at the lower end"), (0.0, "")]
+)
+def test_cycles_left_of_wear_that_leans_are_said_to_be_of_the_mean_over_the_face(lean, end):
+    across = AcrossFace(np.arange(3.0), np.full(3, 0.02), np.full(3, 1e-3), lean, 0.001, 0.0, 0.001)
+    said = forecast_words(replace(study(depth=0.08), across=across))
+    assert said.startswith(f"Cycles left, mean flank (mean over the face; {end}): " if end else "Cycles left, mean flank: ")
+
+
+def test_the_forecast_on_the_terminal_is_not_cut_within_a_number():
+    """What has no room goes by whole clauses, so that every bracket is closed."""
+    words = forecast_words(study(depth=0.08, thickness=0.5))
+    for width in range(30, 80):
+        shown = " ".join(to_a_clause(words, width, 3))
+        assert shown.count("(") == shown.count(")")

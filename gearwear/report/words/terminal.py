@@ -87,7 +87,7 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     cost = unbroken(change_line(said_changes(results), width))
     said += [(line, "") for line in [*_loop(results, width, 3 if cost else 4), *([cost] if cost else [])]]
     law = None if results.pair is None else results.pair.law
-    said += [(line, "") for line in wrapped(forecast_words(law, results.wear.regions), width, 3)]
+    said += [(line, "") for line in to_a_clause(forecast_words(law, results.wear.regions), width, 3)]
     second = None if results.pair is None else results.pair.second_loop
     if second is not None and second.effects:
         said += [(line, "") for line in wrapped(running_words(second), width, 3)]

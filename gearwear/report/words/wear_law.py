@@ -111,7 +111,13 @@ def forecast_words(study: WearStudy | None, regions: Sequence[WearRegion] = ()) 
             left.append(f"{count(ahead.left.value)} ({_span(ahead)}) to {limit}{', ' if past else ''}{past}")
     how = ", run on" if study.forecast.by_running else ""
     said = [f"forecast{how}, mean flank at its deepest: {'; '.join(depths)}"] if depths else []
-    said += [f"cycles left, mean flank: {'; '.join(left)}"] if left else []
+    lean = study.across.lean if study.across is not None and study.across.leans else 0.0
+    over = (
+        f" (mean over the face; {1e3 * abs(lean):.0f}{SPACE}µm deeper at the {'upper' if lean > 0.0 else 'lower'} end)"
+        if lean
+        else ""
+    )
+    said = [f"cycles left, mean flank{over}: {'; '.join(left)}", *said] if left else said
     return " ".join(map(sentence, said))
 
 
