@@ -472,9 +472,12 @@ MUTATIONS = [
         ("wear/thickness.py", "LEAST_POINTS = 3", "LEAST_POINTS = 1", "wear/test_thickness.py"),
         ("wear/thickness.py", "ENOUGH_POINTS = 12", "ENOUGH_POINTS = 9", "wear/test_thickness.py"),
         ("wear/section_sums.py", "WINDOW = 0.1", "WINDOW = 0.2", "wear/test_thickness.py"),
-        ("wear/smooth.py", "np.sqrt(kept * modes.noise)", "np.sqrt(modes.noise)", "wear/test_smooth.py"),
+        ("wear/smooth.py", "np.sqrt(kept * self.noise)", "np.sqrt(self.noise)", "wear/test_smooth.py"),
+        ("wear/smooth.py", "modes = modes.of_departures(values[teeth])", "pass", "wear/test_smooth.py"),
+        ("wear/profiles.py", "np.clip(over.sum()", "np.maximum(1.0, over.sum()", "wear/test_profiles.py"),
+        ("wear/profiles.py", "np.maximum(share * more, 0.0)", "0.0 * more", "wear/test_profiles.py"),
         ("wear/smooth.py", "PATCH_LIMIT_STDS = 4.0", "PATCH_LIMIT_STDS = 40.0", "wear/test_smooth.py"),
-        ("wear/smooth.py", "random.normal(size=spread.shape))[::way]", "random.normal(size=spread.shape))", "commands/test_degenerate.py"),
+        ("wear/smooth.py", "own + surface + modes.scattered(kept, random)[::way]", "own + surface + modes.scattered(kept, random)", "commands/test_degenerate.py"),
         ("wear/smooth.py", "covariance.texture * np.outer", "0.0 * np.outer", "wear/test_smooth.py"),
         # wear law
         # under load

@@ -25,7 +25,7 @@ from gearwear.meshing.spread import ContactSpread, contact_spread
 from gearwear.meshing.study import facing
 from gearwear.placing.cells import CellGrid
 from gearwear.processors import each, room
-from gearwear.wear.profiles import ProfileNodes, node_heights, without_added_metal, worn_profiles
+from gearwear.wear.profiles import ProfileNodes, crest_left, node_heights, without_added_metal, worn_profiles
 from gearwear.wear.smooth import WornSurface
 
 POSITIONS, PARTS = 34, 4
@@ -43,17 +43,21 @@ class ToothSides:
         Of the cells, mm².
     depth, made : (teeth, 2, rows, fillet + flank) float
         What is missing, and too much as it was made, mm.
+    crest : (2, rows, nodes) float
+        `crest_left` of what is missing.
     """
 
     nodes: ProfileNodes
     area: Floats
     depth: Floats
     made: Floats
+    crest: Floats
 
     @classmethod
     def of(cls, grid: CellGrid, depth: Floats, area: Floats, made: Floats) -> ToothSides:
         """Metal that was not made so was not put on."""
-        return cls(ProfileNodes.of(grid, PARTS), area, without_added_metal(depth, area), made)
+        missing = without_added_metal(depth, area)
+        return cls(ProfileNodes.of(grid, PARTS), area, missing, made, crest_left(grid, missing, PARTS))
 
     def lacking(self, depth: Floats) -> ToothSides:
         """The same with another depth missing, mm."""
@@ -61,7 +65,7 @@ class ToothSides:
 
     def profiles(self, added: Floats | float = 0.0) -> ToothProfiles:
         """With so much more metal on them, mm."""
-        return worn_profiles(self.nodes, self.depth, self.made + added)
+        return worn_profiles(self.nodes, self.depth, self.made + added, self.crest)
 
 
 @dataclass(frozen=True, slots=True)

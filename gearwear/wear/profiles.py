@@ -27,6 +27,8 @@ MAX_TURN = 0.02
 """Rad that helical teeth may turn between two heights: the chord of a tip circle of 40 mm is then 2 µm off."""
 ROUNDING = 1e-9
 """Rad by which rounding may put a root outside the continued flank at the form circle."""
+LEAST_ALIKE = 4
+"""Worn flanks of a side from which on what they have in common says more than one of them."""
 LEAST_LEVER = 0.35
 """Least |n · e_θ| of a fillet column that is moved: nearer the root a turn would not move the surface along its normal."""
 
@@ -113,7 +115,7 @@ class ProfileNodes:
         )
 
 
-def worn_profiles(nodes: ProfileNodes, depth: Floats, added: Floats | None = None) -> ToothProfiles:
+def worn_profiles(nodes: ProfileNodes, depth: Floats, added: Floats | None = None, crest: Floats | None = None) -> ToothProfiles:
     """Profiles of the worn gear.
 
     Parameters
@@ -124,6 +126,8 @@ def worn_profiles(nodes: ProfileNodes, depth: Floats, added: Floats | None = Non
         Missing depth along the normal, mm; 0 where there is no wear.
     added : same shape, or None
         What the gear had too much (+) or too little before it wore, mm.
+    crest : (2, rows, nodes) float or None
+        `crest_left`: what worn flanks have more than their cells show, mm.
 
     Returns
     -------
@@ -138,6 +142,8 @@ def worn_profiles(nodes: ProfileNodes, depth: Floats, added: Floats | None = Non
     """
     grid, radius, parts = nodes.grid, nodes.radius, nodes.parts
     flank, fillet = _flank_turn(grid, depth, parts), depth[..., : grid.fillet] * nodes.fillet_turn
+    if crest is not None:
+        flank = flank - np.minimum(crest / grid.gear.normal_lever, np.maximum(flank, 0.0))
     below = radius[: len(nodes.beyond_nodes)]
     cut = np.zeros((*fillet.shape[:3], len(below)))
     if grid.gear.undercut:
@@ -150,6 +156,56 @@ def worn_profiles(nodes: ProfileNodes, depth: Floats, added: Floats | None = Non
     half_angle = _kept_apart(nodes.half_angle - turn)
     rising = slice(None, None, grid.gear.orientation)
     return ToothProfiles(grid.gear, radius[rising], nodes.heights, np.ascontiguousarray(half_angle[..., rising]))
+
+
+def crest_left(grid: CellGrid, depth: Floats, parts: int) -> Floats:
+    """How much more metal worn flanks have where they slide least than a smooth curve through the means of their columns.
+
+    Parameters
+    ----------
+    grid : CellGrid
+    depth : (teeth, 2, rows, fillet + flank) float
+        Missing depth along the normal, mm.
+    parts : int
+        Steps of the profile to a column of cells.
+
+    Returns
+    -------
+    (2, rows, parts · flank + 1) float
+        At the nodes of the flank, mm; 0 but within a column in which the lines from both sides of it meet, and on sides few flanks of which
+        are worn.
+
+    Notes
+    -----
+    Sliding wear falls to the pitch point and rises from it, and ends there in a corner. A column that holds it has a mean above it, and every
+    flank carries there. The profile within this column is so much of the lines from both sides, and so much of the smooth curve, as has the
+    mean that was measured: of a rounded flank nearly none, of sliding wear all. From the median of all flanks, as one is too rough.
+    """
+    result = np.zeros((2, grid.rows, parts * grid.flank + 1))
+    roll, place = grid.rolls(parts), 0.5 * (grid.roll_edges[1:] + grid.roll_edges[:-1])
+    weight = np.ones(parts + 1)
+    weight[[0, -1]] = 0.5  # nodes lie evenly in L², as points do
+    for half in range(2):
+        worn = depth[:, half, :, grid.fillet :].any(axis=(1, 2))
+        if worn.sum() < LEAST_ALIKE:
+            continue
+        typical = np.median(depth[worn, half], axis=0)
+        curve, means = _flank_turn(grid, typical, parts) * grid.gear.normal_lever, typical[:, grid.fillet :]
+        for column in range(2, grid.flank - 2):
+            nodes = slice(parts * column, parts * (column + 1) + 1)
+            lines = [
+                means[:, near, None]
+                + (roll[nodes] - place[near]) * ((means[:, far] - means[:, near]) / (place[far] - place[near]))[:, None]
+                for near, far in ((column - 1, column - 2), (column + 1, column + 2))
+            ]
+            (first, last), (first_beyond, last_beyond) = (line.mean(axis=0)[[0, -1]] for line in lines)
+            if not (first > max(last, first_beyond) and last_beyond > max(last, first_beyond)):
+                continue
+            more = curve[:, nodes] - np.maximum(np.maximum(*lines), 0.0)
+            over = np.average(curve[:, nodes], axis=1, weights=weight) - means[:, column]
+            share = np.clip(over.sum() / np.average(more, axis=1, weights=weight).sum(), 0.0, 1.0)
+            result[half, :, nodes] = np.maximum(share * more, 0.0)
+    return result
 
 
 def _over_face(grid: CellGrid, turn: Floats) -> Floats:

@@ -6,13 +6,16 @@ would seem to lose nothing. So each flank takes the penalised least-squares surf
     minimise  Σ (y − f)² / σ² + λ_z Σ (D_z f)² + λ_L Σ (D_L f)²
 
 with D second differences along z and along the profile; those along the profile leave a straight line over 1 / L alone, as sliding wear is
-one. Both stiffnesses are those of greatest restricted likelihood of the flank itself. In the eigenvectors of both penalties the
+one. Both stiffnesses are those of greatest restricted likelihood of the flank itself. Flanks of a side are much alike, so it is their median
+that is made smooth first, and then what each of them departs from it by: level, slopes and twist, which nothing penalises, then have the
+variance that they show beyond their noise. Else each flank would have the noise of its own cells in them, and a range over all teeth shows
+the flanks that happen to have most. In the eigenvectors of both penalties the
 covariance is diagonal, so that surface, likelihood and posterior are closed forms; texture enters by its variance in each of them, as noise.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -23,6 +26,7 @@ from gearwear.diagnose.covariance import CellCovariance
 from gearwear.placing.cells import CellGrid
 from gearwear.placing.side_maps import infill
 from gearwear.wear.least import correlation
+from gearwear.wear.profiles import LEAST_ALIKE
 from gearwear.wear.regions import Wear
 
 DECADES = np.arange(-4.0, 9.0)
@@ -34,6 +38,8 @@ PATCH_SOFTNESS_DECADES = 1.0
 MAX_PATCH_SHARE = 0.8
 """Share of a flank that a patch may take."""
 MAX_ROUNDS = 20
+MEDIAN_VARIANCE = 0.5 * np.pi
+"""Times the variance of a mean that of a median."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +66,7 @@ class _Modes:
     across: Floats  # (columns, columns)
     bend: tuple[Floats, Floats]  # their eigenvalues
     noise: Floats  # (rows, columns), mm²
+    free: Floats  # (rows, columns), mm²: variance of the surface where nothing is penalised; of what bends it is 1 / its penalty
 
     @classmethod
     def of(cls, rows: int, place: Floats, white: float, covariance: CellCovariance | None) -> _Modes:
@@ -71,13 +78,23 @@ class _Modes:
             steps = ((along, covariance.row_step), (across, covariance.column_step))
             shares = [np.einsum("ij,ik,kj->j", vectors, correlation(step, len(vectors)), vectors) for vectors, step in steps]
             noise = noise + covariance.texture * np.outer(*shares)
-        return cls(along, across, (a, b), noise)
+        return cls(along, across, (a, b), noise, np.full_like(noise, np.inf))
+
+    def of_typical(self, flanks: int) -> _Modes:
+        """Those of the median of so many flanks."""
+        return replace(self, noise=MEDIAN_VARIANCE / flanks * self.noise)
+
+    def of_departures(self, departures: Floats) -> _Modes:
+        """Those of how far flanks differ from a typical one, (flanks, rows, columns) mm: where nothing is penalised they differ by as much as they
+        scatter beyond their noise."""
+        square = np.array([self.taken(one) for one in departures]) ** 2
+        return replace(self, free=np.maximum(square.sum(axis=0) / (len(square) - 1) - self.noise, 0.0))
 
     def prior(self, stiffness: Floats) -> Floats:
-        """Variance of the surface in each pair, mm²: (…, rows, columns) for log10 stiffness (…, 2); inf where nothing is penalised."""
+        """Variance of the surface in each pair, mm²: (…, rows, columns) for log10 stiffness (…, 2)."""
         weight = 10.0**stiffness / self.noise.mean()
         bend = weight[..., :1, None] * self.bend[0][:, None] + weight[..., 1:, None] * self.bend[1]
-        return np.where(bend > 0.0, 1.0 / np.maximum(bend, 1e-300), np.inf)
+        return np.where(bend > 0.0, 1.0 / np.maximum(bend, 1e-300), self.free)
 
     def stiffness(self, coefficients: Floats) -> Floats:
         """(2,) log10 stiffness along z and along the profile of greatest restricted likelihood."""
@@ -98,6 +115,22 @@ class _Modes:
     def surface(self, coefficients: Floats) -> Floats:
         """The flank of some coefficients."""
         return np.asarray(self.along @ coefficients @ self.across.T, dtype=np.float64)
+
+    def typical(self, flanks: Floats, draws: int, random: np.random.Generator, way: int) -> Floats:
+        """The surface that flanks (n, rows, columns) have in common, and so many drawn from what it may be; their mean depth stays. A median of
+        cells is bent where flanks lean differently: so what nothing penalises is apart."""
+        modes, taken = self.of_typical(len(flanks)), np.array([self.taken(one) for one in flanks])
+        free = np.where(np.add.outer(*self.bend) > 0.0, 0.0, taken)
+        bent = np.median([one - self.surface(own) for one, own in zip(flanks, free, strict=True)], axis=0)
+        coefficients = np.median(free, axis=0) + self.taken(bent)
+        kept = modes.kept(modes.stiffness(coefficients))
+        surface = modes.surface(kept * coefficients)
+        surface = surface + (flanks - surface).mean()
+        return np.stack([surface, *(surface + modes.scattered(kept, random)[::way] for _ in range(draws))])
+
+    def scattered(self, kept: Floats, random: np.random.Generator) -> Floats:
+        """How a surface of which so much of each coefficient is kept may be off: the posterior's variance is noise · prior / (noise + prior)."""
+        return self.surface(np.sqrt(kept * self.noise) * random.normal(size=kept.shape))
 
     def kept(self, stiffness: Floats) -> Floats:
         """Share of each coefficient that is surface."""
@@ -137,7 +170,7 @@ def smooth_surface(
     drawn = np.repeat(depth[None], draws, axis=0)
     if not wear.mask.any():
         return WornSurface(depth, drawn)
-    white = noise**2 / max(float(np.median(side_maps.count[side_maps.seen])), 1.0)
+    white = noise**2 * float((1.0 / np.maximum(side_maps.count[side_maps.seen], 1.0)).mean())
     measured = -infill(side_maps)
     # Draws belong to teeth counted from the most worn one, with the more worn side ahead: which tooth a pose calls the first, and which end is
     # up, must not change what scatters how far.
@@ -152,19 +185,23 @@ def smooth_surface(
         modes = _Modes.of(rows.stop - rows.start, place, white, covariance)
         mask, values = wear.mask[:, half, rows, part], measured[:, half, rows, part]
         teeth = np.flatnonzero(mask.any(axis=(1, 2)))
+        counted = (zone, number, half) if way > 0 else (len(zones) - 1 - zone, number, 1 - half)
+        common = np.zeros((1 + draws, *values.shape[1:]))  # the surface they have in common, and drawn
+        if len(teeth) >= LEAST_ALIKE:
+            common = modes.typical(values[teeth], draws, np.random.default_rng((*counted, len(depth))), way)
+            values = values - common[0]
+            modes = modes.of_departures(values[teeth])
         stiffnesses = {tooth: modes.stiffness(modes.taken(values[tooth])) for tooth in teeth}
         usual = np.median(list(stiffnesses.values()), axis=0) if stiffnesses else np.zeros(2)
         typical = np.median(values[teeth], axis=(0, 1)) if len(teeth) else np.zeros(len(place))
-        counted = (zone, number, half) if way > 0 else (len(zones) - 1 - zone, number, 1 - half)
         for tooth in teeth:
             random = np.random.default_rng((*counted, way * int(tooth - first) % len(depth)))
             for where, flank, stiffness in _pieces(modes, values[tooth], stiffnesses[tooth], usual, typical):
                 worn, kept = where & mask[tooth], modes.kept(stiffness)
                 surface = modes.surface(kept * modes.taken(flank))
-                depth[tooth, half, rows, part][worn] = surface[worn]
-                spread = np.sqrt(kept * modes.noise)  # the posterior's variance: noise · prior / (noise + prior)
-                for draw in drawn:
-                    other = surface + modes.surface(spread * random.normal(size=spread.shape))[::way]
+                depth[tooth, half, rows, part][worn] = (common[0] + surface)[worn]
+                for own, draw in zip(common[1:], drawn, strict=True):
+                    other = own + surface + modes.scattered(kept, random)[::way]
                     draw[tooth, half, rows, part][worn] = other[worn]
     return WornSurface(depth, drawn)
 

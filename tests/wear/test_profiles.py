@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import flank_points
 from gearwear.placing.cells import CellGrid, bin_points
-from gearwear.wear.profiles import ProfileNodes, node_radii, without_added_metal, worn_profiles
+from gearwear.wear.profiles import ProfileNodes, crest_left, node_radii, without_added_metal, worn_profiles
 from gearwear.wear.regions import find_wear
 from gearwear.wear.solid import gear_triangles, nominal_like
 from gearwear.wear_law.teeth import alike_teeth, worn_teeth
@@ -158,3 +158,48 @@ def test_two_worn_teeth_are_no_rule(pinion):
     wear = worn(pinion, np.where(np.isin(np.arange(12), (2, 3)), 0.05, 0.0))
     wear = replace(wear, mask=wear.mask & (wear.depth > 0.02))
     assert set(alike_teeth(wear, 0)) == set(worn_teeth(wear, 0))
+
+
+def column_means(grid, depth):
+    """Of `depth` over the roll, points lying evenly in L²; on all left flanks and rows."""
+    edges = grid.roll_edges**2
+    fine = np.sqrt(edges[:-1, None] + np.diff(edges)[:, None] * (np.arange(400) + 0.5) / 400)
+    result = np.zeros((grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
+    result[:, 0, :, grid.fillet :] = depth(fine).mean(axis=1)
+    return result
+
+
+@pytest.mark.parametrize("place", [0.1, 0.3, 0.5, 0.7, 0.9])
+def test_a_flank_worn_to_a_corner_is_worn_to_it_within_its_column(pinion, place):
+    """Sliding wear has none at the pitch point, wherever in a column that lies; the mean of the column says a quarter of what is lost a column on."""
+    grid = grid_of(pinion)
+    low, high = grid.roll_edges[5:7]
+    corner = low + place * (high - low)
+    parts = 4
+    nodes = ProfileNodes.of(grid, parts)
+    depth = column_means(grid, lambda roll: 0.01 * np.abs(roll - corner))
+    roll = grid.rolls(parts)[5 * parts : 6 * parts + 1]
+    off = []
+    for crest in (None, crest_left(grid, depth, parts)):
+        worn = worn_profiles(nodes, depth, crest=crest).half_angle[0, 0, 3, -(parts * grid.flank + 1) :]
+        lost = (nodes.half_angle[0, 3, -len(worn) :] - worn) * pinion.base_radius
+        off.append(float(np.abs(lost[5 * parts : 6 * parts + 1] - 0.01 * np.abs(roll - corner)).max()))
+    assert off[0] > 0.1 * 0.01 * (high - low)
+    assert off[1] < 0.5 * off[0]
+    assert not crest_left(grid, depth, parts)[1].any()
+
+
+def test_a_flank_worn_round_has_no_corner(pinion):
+    """A parabola: beyond what its columns show there is next to nothing, a tenth of what the lines beside it would add."""
+    grid = grid_of(pinion)
+    middle, wide = 0.5 * grid.roll_edges[5:7].sum(), np.diff(grid.roll_edges[5:7])[0]
+    crest = crest_left(grid, column_means(grid, lambda roll: 0.02 + 0.002 * (roll - middle) ** 2), 4)
+    assert crest.max() < 0.1 * 2.0 * 0.002 * wide**2
+
+
+def test_of_few_worn_flanks_no_corner_is_told(pinion):
+    grid = grid_of(pinion)
+    middle = 0.5 * grid.roll_edges[5:7].sum()
+    depth = column_means(grid, lambda roll: 0.01 * np.abs(roll - middle))
+    depth[3:] = 0.0
+    assert not crest_left(grid, depth, 4).any()
