@@ -48,6 +48,7 @@ MUTATIONS = [
         ("design/twist.py", "arc * gear.base_radius / gear.reference_radius", "arc", "placing/test_refusal.py"),
         # scans the wrong way round
         ("comparison/notes.py", "<= GROWN * math.hypot", "> GROWN * math.hypot", "comparison/test_before.py"),
+        ("comparison/before.py", "(*[huber_weight] * ROUNDS, tukey_weight)", "[huber_weight] * ROUNDS", "comparison/test_before.py"),
         ("comparison/before.py", "variance, both & ~flank)", "variance, both)", "comparison/test_before.py"),
         ("comparison/before.py", "(flank & np.isin(on.side, worn))", "(flank & False)", "comparison/test_before.py"),
         ("comparison/before.py", "if np.isin(on.surface[both], (TIP, ROOT, BORE)).any():", "if True:", "comparison/test_before.py"),

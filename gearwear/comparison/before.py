@@ -22,7 +22,7 @@ from gearwear.errors import InputError
 from gearwear.placing.cells import Cells
 from gearwear.placing.least_squares import solved
 from gearwear.placing.pose import motion_columns
-from gearwear.robust import huber_weight, median_scale, scale_about
+from gearwear.robust import huber_weight, median_scale, scale_about, tukey_weight
 from gearwear.scan.reading import check_different, read_scan
 from gearwear.scan.types import Scan
 from gearwear.wear.regions import Wear, find_wear
@@ -82,11 +82,12 @@ def _measured_otherwise(cells: Cells, changed: Floats, after: MeasuredGear, unwo
 
 
 def _robust(columns: Floats, target: Floats, variance: Floats, tells: Bools) -> Floats:
-    """What some columns (m, p) explain of a target (m,) by the cells that tell, everywhere; fitted with Huber's weights."""
+    """What some columns (m, p) explain of a target (m,) by the cells that tell, everywhere; fitted with Huber's weights, and from there one
+    step with Tukey's, in which what lies far off has no say."""
     amounts = np.zeros(columns.shape[1])
-    for _ in range(ROUNDS):
+    for weight in (*[huber_weight] * ROUNDS, tukey_weight):
         left = (target[tells] - columns[tells] @ amounts) / np.sqrt(variance[tells])
-        amounts = solved(columns[tells], target[tells], huber_weight(left, scale_about(left)) / variance[tells])
+        amounts = solved(columns[tells], target[tells], weight(left, scale_about(left)) / variance[tells])
     return np.asarray(columns @ amounts)
 
 

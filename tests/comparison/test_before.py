@@ -116,9 +116,13 @@ def scans_of(lost, worn, noise=0.004):
         (lambda on: 0.03 * ((on.surface == FLANK) & (on.side > 0)), {Side.LEFT}),
         (lambda on: 0.012 * (on.surface == FLANK), set()),  # of both sides, and neither is known to be worn
         (lambda on: 0.1 * ((on.surface == FLANK) & (on.tooth == 3) & (on.position[:, 2] > 9.0)), set()),
+        (
+            lambda on: 0.3 * ((on.surface == FLANK) & (on.side > 0) & (on.tooth < 4)),
+            set(),
+        ),  # a third of a side that is none worn throughout
         (lambda on: np.zeros(len(on)), set()),
     ],
-    ids=["one side", "both sides evenly", "part of a tooth", "nothing"],
+    ids=["one side", "both sides evenly", "part of a tooth", "four flanks", "nothing"],
 )
 def test_of_a_difference_is_left_what_is_lost_and_not_how_it_was_placed_and_measured(lost, worn):
     """A motion, a coat and a scale are put in; what is taken out hangs on thousands of cells that scatter by 3 µm."""

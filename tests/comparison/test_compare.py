@@ -333,7 +333,8 @@ def test_against_a_scan_before_wear(folder, coat_before, coat_after):
     assert results.before_files == (str(before[0]),)
     (change,) = (change for change in results.changes if change.name == "worn_volume_mm3")
     hidden = change.after - change.before
-    assert abs(hidden) < 0.05 if coat_before else 0.25 * change.after < hidden < 2.0 * change.std
+    shared = 0.5 * results.wear.volume_std  # how the scans lie on one another is known no better
+    assert abs(hidden) < shared if coat_before else 0.25 * change.after < hidden < 2.0 * change.std
     assert not change.matters and change.causes == ()
     worst = max(results.wear.thickness.teeth(), key=lambda tooth: tooth.greatest_loss)
     lost = scan.truth.flanks[0].thickness_loss_mm
