@@ -112,7 +112,7 @@ SCANS = [
     ("metre.ply", "units = m "),
     ("micrometre.ply", "units = um"),
     ("wheel.ply", "does not fit the design: "),
-    ("thirteen.ply", "12 teeth"),
+    ("thirteen.ply", "13 teeth are counted in it, and the design has 12"),
     ("module6.ply", "12 teeth and tip diameter 88.90 mm"),
     ("sphere.ply", "does not fit the design: "),
     ("box.ply", "not of this gear"),
