@@ -265,7 +265,7 @@ def ways_to_read(measured: MeasuredGear, wear: Wear) -> list[tuple[ReadOtherwise
             carried = np.zeros_like(beside)
             carried[:, worn] = beside[:, [1 - index for index in worn]]
             ways += [(ReadOtherwise.CARRIED, sign * carried) for sign in (1.0, -1.0)]
-    scanners = [effect for effect in loop.form if effect.evidence.taken_back and effect.kind in MEASURED]
+    scanners = [effect for effect in loop.form if effect.evidence.taken_back and loop.stands_as(effect) in MEASURED]
     if scanners or loop.either:
         points = side_points(grid)
     if scanners:

@@ -15,7 +15,7 @@ EDGE_PASSES = 2
 """An edge found in a pose that its points have bent is looked for once more in the better one."""
 
 
-def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, smoothed: bool = False) -> tuple[PlacedScan, TipEdge]:
+def on_its_tips(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, smoothed: bool) -> tuple[PlacedScan, TipEdge]:
     """The scan on the design with the edges between flanks and tips that it shows.
 
     Parameters
@@ -50,7 +50,7 @@ def on_tips_of(other: Gear, placed: PlacedScan, scans: Sequence[Scan], gear: Gea
     return laid_on(own, scans, unstated_root(own), placed), TipEdge(own, other.spec.tip_chamfer)
 
 
-def on_its_ends(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, smoothed: bool = False) -> tuple[PlacedScan, EndEdge]:
+def on_its_ends(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, smoothed: bool) -> tuple[PlacedScan, EndEdge]:
     """The scan on the design with the edges at the ends of the face that it shows; what they bent of the pose is out of it before they are told.
 
     Parameters

@@ -263,9 +263,9 @@ class Loop(Card):
 
     def deviation(self, points: SurfacePoints, kinds: frozenset[Kind]) -> Floats:
         """What the effects of some kinds do to the deviation of points, mm, (n,)."""
-        return self._sum((effect for effect in (*self.effects, *self.form) if self._stands_as(effect) in kinds), points)
+        return self._sum((effect for effect in (*self.effects, *self.form) if self.stands_as(effect) in kinds), points)
 
-    def _stands_as(self, effect: FoundEffect) -> Kind:
+    def stands_as(self, effect: FoundEffect) -> Kind:
         """The effect's kind; FORM where its drawing says that what a scanner does may as well be how the part was made."""
         return Kind.FORM if effect.candidate.effect.as_made(self.context) else effect.kind
 
@@ -294,7 +294,7 @@ class Loop(Card):
     def surely_made(self, points: SurfacePoints) -> Floats:
         """What the maker did to the deviation of points, mm, (n,), without what the scanner may have done as well."""
         known = named_effects()
-        made = (effect for effect in (*self.effects, *self.form) if self._stands_as(effect) in MADE)
+        made = (effect for effect in (*self.effects, *self.form) if self.stands_as(effect) in MADE)
         sure = (e for e in made if all(known[name].kind is not Kind.MEASUREMENT for name in e.alternatives if name in known))
         return self._sum(sure, points)
 

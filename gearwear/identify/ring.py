@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.twist import wrapped_angle
+from gearwear.placing.tooth_count import tooth_harmonics
 from gearwear.robust import median_scale
 
 MOST_TEETH = 400
@@ -205,15 +206,9 @@ def count_teeth(
     The outer rings count +, the inner ones −, so teeth and spaces add up in the harmonics z, 3z, 5z … Every number is judged by what its
     multiples hold together; divisors of z hold as much, multiples less, so the greatest number that holds nearly all is z.
     """
-    rings, steps = 16, 8192
-    angle = wrapped_angle(angle - turn)
-    ring = np.clip(((radius - root) * (rings / (tip - root))).astype(np.int64), -1, rings)
-    moment = np.zeros(steps // 2 + 1, dtype=np.complex128)
-    for number in range(rings):
-        in_ring = angle[(ring == number) | ((number == rings - 1) & (ring == rings))]
-        if len(in_ring) >= 20:
-            density = np.histogram(in_ring, steps, (-math.pi, math.pi))[0] / len(in_ring)
-            moment += np.fft.rfft(density) * (1.0 if number >= rings // 2 else -1.0)
+    rings = 16
+    ring = np.clip(((radius - root) * (rings / (tip - root))).astype(np.int64), -1, rings - 1)
+    moment = tooth_harmonics(wrapped_angle(angle - turn), ring, rings, 20)
     power = np.abs(moment) ** 2
     power[:4] = 0.0
     power = np.maximum(power - 2.0 * np.median(power[4:2000]), 0.0)
@@ -221,6 +216,6 @@ def count_teeth(
         return None
     held = np.array([power[n::n][:9].sum() if n >= 5 else 0.0 for n in range(MOST_TEETH + 1)])
     teeth = int(np.flatnonzero(held > 0.75 * held.max())[-1]) if known is None else known
-    # rfft sums exp(−i n (θ + π)).
+    # Of exp(−i n (θ + π)).
     phase = -math.pi - float(np.angle(moment[teeth])) / teeth
     return ToothCount(teeth, phase, float(held[teeth] / power.sum()))

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.robust import median_scale
 
@@ -23,7 +24,10 @@ OFF_AXIS = 0.25
 """Modules by which the tips' centre lies off the design's axis where teeth that mesh there say nothing: it is known to less, unless most teeth are broken."""
 LEAST_POINTS = 200
 """Points on either half of the tooth height from which there is a pattern."""
-_DIRECTIONS, _TIP = 8192, 0.97
+DIRECTIONS = 8192
+"""Round the gear, in which points are counted: twenty to a tooth of the largest number; numerical."""
+TIP = 0.97
+"""Share of the points of a pitch that lie lower than the one that is taken for its tip: strays apart."""
 
 
 def other_count(flat: Floats, gear: Gear) -> int | None:
@@ -60,13 +64,33 @@ def other_count(flat: Floats, gear: Gear) -> int | None:
 def _repeats(flat: Floats, gear: Gear) -> Floats:
     """How strongly the pattern repeats so many times round, by that number."""
     radius, angle = np.hypot(*flat.T), np.arctan2(flat[:, 1], flat[:, 0])
-    outer = radius > 0.5 * (gear.tip_radius + gear.root_radius)
-    moment = np.zeros(_DIRECTIONS // 2 + 1, dtype=np.complex128)
-    for half, sign in ((outer, 1.0), (~outer, -1.0)):
-        if half.sum() < LEAST_POINTS:
-            return np.zeros(len(moment))
-        moment += sign * np.fft.rfft(np.histogram(angle[half], _DIRECTIONS, (-math.pi, math.pi))[0] / half.sum())
-    return np.abs(moment)
+    half = (radius > 0.5 * (gear.tip_radius + gear.root_radius)).astype(np.int64)
+    if np.bincount(half, minlength=2).min() < LEAST_POINTS:
+        return np.zeros(DIRECTIONS // 2 + 1)
+    return np.abs(tooth_harmonics(angle, half, 2, LEAST_POINTS))
+
+
+def tooth_harmonics(angle: Floats, ring: Ints, rings: int, fewest: int) -> NDArray[np.complex128]:
+    """Harmonics n = 0 … `DIRECTIONS` / 2 of the pattern of teeth: sums of exp(−i n (θ + π)) over points, + in the outer half of the rings and − in the inner one,
+    in which teeth and spaces add up.
+
+    Parameters
+    ----------
+    angle : (n,) float
+        About the axis, rad, −π … π.
+    ring : (n,) int
+        Which of so many `rings` each point is in, from the root on for teeth that point outwards; −1: in none.
+    rings : int
+    fewest : int
+        Points from which on a ring counts; each counts the same.
+    """
+    result = np.zeros(DIRECTIONS // 2 + 1, dtype=np.complex128)
+    for number in range(rings):
+        inside = angle[ring == number]
+        if len(inside) >= fewest:
+            density = np.histogram(inside, DIRECTIONS, (-math.pi, math.pi))[0] / len(inside)
+            result += np.fft.rfft(density) * (1.0 if number >= rings // 2 else -1.0)
+    return result
 
 
 def _centre_of_tips(flat: Floats, gear: Gear) -> Floats | None:
@@ -78,7 +102,7 @@ def _centre_of_tips(flat: Floats, gear: Gear) -> Floats | None:
     seen = count > 0.2 * np.median(count) if len(count) else np.zeros(0, dtype=np.bool_)
     if seen.sum() < LEAST_TEETH_SEEN * gear.teeth:
         return None
-    top = order[(first + (_TIP * (count - 1)).astype(np.int64))[seen]]
+    top = order[(first + (TIP * (count - 1)).astype(np.int64))[seen]]
     columns = np.column_stack([np.cos(angle[top]), np.sin(angle[top]), np.ones(len(top))])
     on = np.ones(len(top), dtype=np.bool_)
     for _ in range(3):

@@ -54,15 +54,13 @@ class Smoothing(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear
         least = LEAST_RADIUS * gear.transverse_module
-        radius = np.full(len(points), np.inf)
+        radius = np.full(len(points), np.inf)  # times cos β_b, as lengths of roll are
         flank = points.surface == FLANK
         radius[flank] = gear.orientation * np.maximum(points.roll[flank], least)
         for code, way in ((TIP, gear.orientation), (ROOT, gear.orientation), (BORE, -gear.orientation)):
             on = points.surface == code
-            radius[on] = (
-                way * np.hypot(*points.position[on, :2].T) * gear.base_helix_cosine
-            )  # as the flanks', which are counted in L
-        return np.asarray(-max(gear.reference_roll, least) / radius)[:, None]
+            radius[on] = way * np.hypot(*points.position[on, :2].T) * gear.base_helix_cosine
+        return np.asarray(-gear.reference_roll / radius)[:, None]
 
 
 EFFECT = Smoothing()
