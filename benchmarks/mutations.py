@@ -319,6 +319,7 @@ MUTATIONS = [
         ("wear/thickness.py", "high = min(low, self.seam.low), max(high, self.seam.high)", "high = low, high", "comparison/test_seam.py"),
         ("report/words/other_design.py", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.4", "MODULE_OFF, MODULE_ALIKE = 0.003, 0.25", "report/test_words.py"),
         ("report/words/verdict.py", "LOPSIDED = 4.0", "LOPSIDED = 2.0", "report/test_words.py"),
+        ("report/words/lost.py", "abs(solids.volume - wear.volume) > NORMAL_95 *", "abs(solids.volume - wear.volume) >", "report/test_words.py"),
         ("placing/tooth_count.py", "MORE_OFTEN = 1.2", "MORE_OFTEN = 0.5", "placing/test_tooth_count.py"),
         ("placing/tooth_count.py", "LEAST_TEETH_SEEN = 0.5", "LEAST_TEETH_SEEN = 1.1", "placing/test_tooth_count.py"),
         ("placing/refusal.py", "LEAST_FLANK = 100", "LEAST_FLANK = 10", "placing/test_refusal.py placing/test_belonging.py"),

@@ -31,6 +31,7 @@ from gearwear.diagnose.found import FoundEffect
 from gearwear.diagnose.judge import Evidence
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 from gearwear.wear.regions import WearRegion
+from gearwear.wear.solid import Solids
 from gearwear.wear.thickness import SectionThickness
 from tests.synthetic import Effect, Patch, Recipe, make_scan
 
@@ -187,6 +188,14 @@ def fake_regions() -> tuple[WearRegion, ...]:
     )
 
 
+def solids_of(results: Results, volume: float) -> Solids:
+    """The same bodies, larger or smaller: that hold so many mm³."""
+    solids = results.wear.solids
+    assert solids is not None
+    scale = math.cbrt(volume / solids.volume)
+    return replace(solids, bodies=tuple(replace(body, vertices=scale * body.vertices) for body in solids.bodies))
+
+
 @cache
 def fake_results() -> Results:
     """`real_results` with numbers that are known: three worn flanks, three effects, five changes; nothing to doubt but one warning."""
@@ -215,6 +224,7 @@ def fake_results() -> Results:
         found=replace(real.wear.found, regions=fake_regions(), volume=90.80, volume_std=0.51),
         before_loop=replace(real.wear.before_loop, volume=83.1, volume_std=0.6),
         thickness=fake_thickness({2: 1.58, 1: 0.21, 3: 0.13}),
+        solids=solids_of(real, 90.80),
     )
     changes = (
         Change("worn_volume_mm3", 83.1, 90.8, 0.0, 0.8, (("coating", 8.2),)),

@@ -39,7 +39,7 @@ from gearwear.report.words.verdict import (
 )
 from gearwear.wear.limits import FlankLimit
 from gearwear.wear.tooth_summary import ThinnestTooth
-from tests.report.fake import bare_results, changed, fake_regions, fake_results, fake_thickness
+from tests.report.fake import bare_results, changed, fake_regions, fake_results, fake_thickness, solids_of
 
 
 def spoken(text: str) -> str:
@@ -413,6 +413,18 @@ def test_warnings_of_the_drawing_are_not_doubts_about_the_result():
     results = fake_results()
     assert len(doubts(results)) == 1
     assert doubts(changed(results, "measured.design.warnings", results.notes)) == []
+
+
+@pytest.mark.parametrize(
+    ("off", "told"), [(1.9, ""), (-1.9, ""), (2.1, "91.87 mm³, 1.1 mm³ more"), (-2.1, "89.73 mm³, 1.1 mm³ less")]
+)
+def test_a_solid_of_another_volume_than_stated_is_told(off, told):
+    """By how many standard deviations, 0.51 mm³, its volume is off: 95 % lie within 1.96."""
+    results = fake_results()
+    said = spoken(" ".join(doubts(changed(results, "wear.solids", solids_of(results, 90.80 + off * 0.51)))))
+    assert (f"worn_volume.stl, holds {told} than the 90.80 ± 0.51 mm³ of the scan" in said) == bool(told)
+    assert ("worn_volume" in said) == bool(told)
+    assert "worn_volume" not in " ".join(doubts(changed(results, "wear.found.regions", ())))
 
 
 def test_the_thinnest_tooth_is_the_one_with_the_least_left():

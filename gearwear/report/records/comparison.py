@@ -35,6 +35,7 @@ from gearwear.report.records.teeth import mark_record, pattern_values, same_teet
 from gearwear.report.records.unexplained import unexplained_record
 from gearwear.report.records.views import view_record
 from gearwear.report.records.wear_law import wear_law_record
+from gearwear.report.words.lost import solid_words
 from gearwear.report.words.verdict import doubts_of_design, grave_doubts, noise, weighed_words
 from gearwear.wear.regions import Wear, WearRegion
 
@@ -90,7 +91,7 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         if results.halves
         else None,
         "doubtful": grave_doubts(results),
-        "notes": [*doubts_of_design(results), *weighed_words(results.weighed), *results.notes],
+        "notes": [*doubts_of_design(results), *weighed_words(results.weighed), *solid_words(results), *results.notes],
         "files": list(files),
     }
 

@@ -104,6 +104,19 @@ def may_be_none(results: Results) -> bool:
     return is_open(results) and limits is not None and limits[0] <= 0.0 and depth is not None and depth[0] <= 0.0
 
 
+def solid_words(results: Results) -> list[str]:
+    """That the solid holds another volume than is stated: one sentence where that is beyond the stated one's own 95 %, else none."""
+    solids, wear = results.wear.solids, results.wear
+    if solids is None or not wear.regions or not abs(solids.volume - wear.volume) > NORMAL_95 * wear.volume_std:
+        return []
+    unit, other = UNIT[results.planar], solids.volume - wear.volume
+    return [
+        f"the solid, worn_volume.stl, holds {significant(solids.volume, 4)}{SPACE}{unit}, {significant(abs(other), 2)}{SPACE}{unit}"
+        f" {'more' if other > 0.0 else 'less'} than the {_with_own_std(results)} of the scan: a smooth surface is drawn through the cells;"
+        " quote the latter"
+    ]
+
+
 def _question(results: Results) -> str:
     """What the scan does not decide, where that leaves more open than the volume's own 95 %; "" else."""
     widest = results.open_volume.widest

@@ -32,6 +32,7 @@ from gearwear.report.words.lost import (
     may_be_none,
     open_words,
     size_words,
+    solid_words,
     where_lost,
     worn_so_thin,
 )
@@ -223,6 +224,7 @@ def doubts(results: Results) -> list[str]:
     said += silent_words(results)
     said += [*results.notes, *results.measured.placed.registration.notes]
     said += weighed_words(results.weighed)
+    said += solid_words(results)
     harmless = set(results.design.warnings)  # about the drawing, not about this result
     return [sentence(text) for text in dict.fromkeys(said) if text not in harmless]
 
