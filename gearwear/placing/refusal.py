@@ -235,11 +235,14 @@ def _not_this(reason: str) -> str:
 
 
 def _seen_helix(gear: Gear, more: float) -> str:
-    """Teeth that turn by `more` rad/mm than the design's, in words; about, as points far off it were left out."""
+    """Teeth that turn by `more` rad/mm than the design's, in words. By how much says what finds the angle from the scan alone
+    (`gearwear.identify`): here points far off the design were left out, or normals of few points are meaned, and another number would stand beside that."""
     angle = math.degrees(math.atan(gear.reference_radius * (gear.twist + more)))
     if abs(angle) < HELICAL:
         return "spur"
-    return f"helical, {'right' if angle > 0.0 else 'left'} hand, about {abs(angle):.0f}° at the reference circle"
+    drawn = math.degrees(gear.helix_angle)
+    other = f", of a {'larger' if abs(angle) > abs(drawn) else 'smaller'} helix angle" if angle * drawn > 0.0 else ""
+    return f"helical, {'right' if angle > 0.0 else 'left'} hand{other}"
 
 
 def _helix(gear: Gear) -> str:

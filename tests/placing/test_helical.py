@@ -86,7 +86,8 @@ def test_moving_along_the_teeth_leaves_their_flanks():
     ("degrees", "said"),
     [
         (-20.0, "the design is left hand, helix_angle = -20"),
-        (17.0, "right hand, about 20°"),
+        (17.0, "helical, right hand, of a larger helix angle"),
+        (23.0, "helical, right hand, of a smaller helix angle"),
         (0.0, "the design is of a spur gear"),
     ],
 )

@@ -25,8 +25,12 @@ def design(helix: float, width: float, gear, **more):
 
 MAKE = {Helical: helical_scan, Double: double_scan, Ring: ring_scan}
 CASES = {
-    "hands cross by more than a pitch": (ONE, design(-20.0, 14.0, ONE), "helical, right hand, about 20°"),
-    "a ring of the other hand": (INTERNAL, design(-12.0, 14.0, INTERNAL, internal=True), "helical, right hand, about 12°"),
+    "hands cross by more than a pitch": (ONE, design(-20.0, 14.0, ONE), "teeth of the scan are helical, right hand, and"),
+    "a ring of the other hand": (
+        INTERNAL,
+        design(-12.0, 14.0, INTERNAL, internal=True),
+        "teeth of the scan are helical, right hand, and",
+    ),
     "double helical, one helix drawn": (TWO, design(24.0, TWO.width, TWO.lower), "double helical"),
     "one half": (
         TWO.lower,

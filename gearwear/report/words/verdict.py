@@ -381,8 +381,8 @@ def known(value: float, std: float, digits: int, unit: str = "", least: float = 
 
 
 def subject(part: str, gear: Gear, scans: Sequence[Scan], room: int | None = None) -> str:
-    """What was measured: the gear and the scan, on one line; where there is `room` for so many letters only, blanks go, and then the
-    middle of the file's name, but no number."""
+    """What was measured: the gear and the scan, on one line; where there is `room` for so many letters only, blanks go, then the
+    unit of the module, and then the end of the file's name before its extension, but no number."""
     facts = [
         f"{'internal, ' if gear.spec.internal else ''}z = {gear.teeth}",
         f"m = {as_drawn(gear.spec.normal_module)}{SPACE}mm",
@@ -394,10 +394,21 @@ def subject(part: str, gear: Gear, scans: Sequence[Scan], room: int | None = Non
     points = sum(scan.read for scan in scans)
     name, more = Path(files[0]).name, f" and {len(files) - 1} more" if len(files) > 1 else ""
     before, after = f"{part}, {', '.join(facts)} · ", f"{more}, {number(points, 0)} points"
-    if room is not None and len(before) + len(name) + len(after) > room:
-        before = before.replace(" = ", "=")
+    for blank, short in ((" = ", "="), (f"{SPACE}mm", "")):  # modules are in mm
+        if room is not None and len(before) + len(name) + len(after) > room:
+            before = before.replace(blank, short)
     left = len(name) if room is None else max(room - len(before) - len(after), LEAST_NAME)
-    if len(name) > left:
-        end = (left - 1) // 2
-        name = f"{name[: left - 1 - end]}…{name[-end:]}"
-    return f"{before}{name}{after}"
+    return f"{before}{shortened(name, left)}{after}"
+
+
+def shortened(name: str, room: int) -> str:
+    """A file's name in so many letters: its beginning and its extension, without that where it would leave next to nothing of the beginning.
+
+    >>> shortened("w2_left_flank.ply", 16), shortened("w2_left_flank.ply", 5), shortened("w2.ply", 16)
+    ('w2_left_fla….ply', 'w2_l…', 'w2.ply')
+    """
+    if len(name) <= room:
+        return name
+    extension = Path(name).suffix
+    begin = room - 1 - len(extension)
+    return f"{name[:begin]}…{extension}" if begin >= LEAST_NAME else f"{name[: room - 1]}…"
