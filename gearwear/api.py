@@ -15,6 +15,7 @@ from gearwear.arrays import Floats
 from gearwear.comparison.bore import filled_in
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
+from gearwear.design.given import check_choice, check_number, check_several, real_array
 from gearwear.design.pair import Design
 from gearwear.design.quantity import shown
 from gearwear.errors import InputError, NotThisGear, check_kind
@@ -56,9 +57,9 @@ def example(file: str = "design.toml") -> Path:
         If there is no such file.
     """
     folder = Path(str(resources.files("gearwear") / "example"))
-    if not (folder / file).is_file():
+    if not isinstance(file, str) or not (folder / file).is_file():
         raise InputError(
-            f"{file}: the bundled example has {', '.join(sorted(one.name for one in folder.iterdir() if one.is_file()))}"
+            f"{file if isinstance(file, str) else shown(file)}: the bundled example has {', '.join(sorted(one.name for one in folder.iterdir() if one.is_file()))}"
         )
     return folder / file
 
@@ -114,10 +115,10 @@ def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "ar
     >>> as_scan(np.column_stack([np.cos(angle), np.sin(angle)]), name="a circle").kind
     'section'
     """
-    given = _real(points, "points")
+    given = real_array("points", points)
     if given.ndim != 2 or given.shape[1] not in (2, 3):
         raise InputError(f"points of shape {given.shape}: (n, 3), or (n, 2) for a planar section, would be right")
-    outward = None if normals is None else _real(normals, "normals")
+    outward = None if normals is None else real_array("normals", normals)
     if outward is not None and outward.shape != (len(given), 3):
         raise InputError(f"normals of shape {outward.shape}: ({len(given)}, 3), one for each point, would be right")
     if given.shape[1] == 2:
@@ -128,17 +129,6 @@ def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "ar
         points=np.ascontiguousarray(cleaned.points), normals=cleaned.normals, triangles=None, kind=cast(ScanKind, kind),
         files=(name,), rejected=cleaned.rejected, view=view,
     )  # fmt: skip
-
-
-def _real(values: ArrayLike, name: str) -> Floats:
-    """Numbers as an array; what numpy would cast silently, words and complex numbers, are none."""
-    try:
-        array = np.asarray(values)
-        if array.dtype.kind in "fiuO":
-            return np.asarray(array, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: rows of different lengths, or no numbers; an array of real numbers would be right") from None
-    raise InputError(f"{name} of type {array.dtype}: an array of real numbers would be right")
 
 
 def find_wear(measured: MeasuredGear) -> Wear:
@@ -178,9 +168,10 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
     InputError
         If a setting cannot be met, the datum was not seen, or the gear has no halves.
     """
-    if half is not None and half not in tuple(Half):
+    if half is not None and not (isinstance(half, str) and half in tuple(Half)):
         raise InputError(f"half = {shown(half)}: lower or upper would be right, of a double helical gear")
     check_kind(measured, MeasuredGear, "measured", MEASURED)
+    check_kind(settings, Settings | None, "settings", "a gw.Settings, or None for the defaults,")
     which = Half(half or Half.LOWER) if half is not None or measured.gear.spec.gap > 0.0 else None
     flanks, chosen = filled_in(measured, settings or Settings(laboratory=True))
     return inspect_half(flanks, measured.gear, which, chosen)
@@ -231,8 +222,18 @@ def compare(
         If a file or a value is wrong, or the scan is of something else: then with what it looks like by itself.
     """
     from gearwear.comparison.stations import compare as run
+    from gearwear.comparison.which_gear import check_part
+    from gearwear.wear_law.study import Ahead
 
+    check_kind(ahead, Ahead | None, "ahead", "a gw.Ahead, or None,")
+    for name, value in (("loop", loop), ("inspection", inspection)):
+        check_kind(value, bool | np.bool_, name, "True or False")
+    if not callable(progress):
+        raise InputError(
+            f"progress of type {type(progress).__name__}: a function that takes the name of a station would be right"
+        )
     drawn = design if isinstance(design, Design) else read_design(cast(Path, design))
+    check_part(drawn, part)
     try:
         return run(drawn, _each(scans), part, _each(before), units, loop, inspection, ahead, progress, stream)
     except NotThisGear as error:
@@ -287,22 +288,28 @@ def write(
         If it is no result of these, the folder cannot be written to, a word of `also` is unknown, or a height lies off the face.
     """
     from gearwear.comparison.results import Results
+    from gearwear.loaded.study import LoadedStudy
     from gearwear.report.files.extras import EXTRAS
     from gearwear.report.files.meshing import write_study
     from gearwear.report.files.writing import output_folder
     from gearwear.report.records.meshing import study_record
     from gearwear.report.write import write_results
+    from gearwear.wear_law.study import WearStudy
 
+    check_kind(folder, str | PathLike, "folder", "the name of a folder")
     if isinstance(result, PairStudy):
+        check_kind(loaded, LoadedStudy | None, "loaded", "what gw.study_load returns, or None,")
+        check_kind(law, WearStudy | None, "law", "a wear law such as results.pair.law, or None,")
         with output_folder(Path(folder)) as stage:
             files = write_study(stage, result, loaded, law)
         return {**study_record(result, loaded, law), "files": files}
     if not isinstance(result, Results):
         raise InputError(f"result = {type(result).__name__}: one of compare or study_meshing would be right")
-    for name in also:
-        if name not in EXTRAS:
-            raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")
-    files = write_results(result, Path(folder), None if sections is None else list(sections), frozenset(also), page=page, pdf=pdf)
+    for name in check_several("also", also, "names"):
+        if not (isinstance(name, str) and name in EXTRAS):
+            raise InputError(f"also = {shown(name)}: one of {', '.join(EXTRAS)} would be right")
+    heights = None if sections is None else check_several("sections", sections, "heights in mm")
+    files = write_results(result, Path(folder), heights, frozenset(also), page=page, pdf=pdf)
     return {**as_dict(result), "files": files}
 
 
@@ -363,8 +370,7 @@ def as_columns(inspection: Inspection, rows: Literal["findings", "flanks", "teet
         "flanks": inspection_columns.flank_columns,
         "teeth": inspection_columns.tooth_columns,
     }
-    if rows not in tables:
-        raise InputError(f"rows = {rows!r}: one of {', '.join(tables)} would be right")
+    check_choice("rows", rows, tables)
     return tables[rows](inspection)
 
 
@@ -402,6 +408,13 @@ def propose_design(
     InputError
         If no gear is seen, or the views do not lie in one frame.
     """
+    for name, known, unit in (
+        ("module", module, "mm"),
+        ("pressure_angle", pressure_angle, "rad"),
+        ("face_width", face_width, "mm"),
+    ):
+        if known is not None:
+            check_number(name, known, unit)
     from gearwear.identify.candidates import find_candidates, share_on
 
     views = views_of(scan)

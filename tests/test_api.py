@@ -177,6 +177,36 @@ class TestStages:
         (lambda: gw.locate(np.ones((5, 3)), scanned()[0]), "gear of type Design: one of design.gears would be right"),
         (lambda: gw.locate(np.ones((5, 6)), scanned()[0].gears["pinion"]), r"points of shape \(5, 6\): \(n, 3\), mm in the design's frame"),
         (lambda: gw.locate(np.ones(3), scanned()[0].gears["pinion"]), r"points of shape \(3,\)"),
+        (lambda: gw.read_scan(scanned()[1], units=["mm"]), r"units \['mm'\]: one of mm"),
+        (lambda: gw.example(3), "^3: the bundled example has design.toml"),
+        (lambda: gw.inspect(real_results().measured, {"required_class": 7}), "settings of type dict: a gw.Settings"),
+        (lambda: gw.register(*scanned_scan(), part=["pinion"]), "part = .*: the design has only pinion, gear"),
+        (lambda: gw.register(*scanned_scan(), grid=3), "grid of type int: a CellGrid"),
+        (lambda: gw.register(scanned()[0], None), "scan of type NoneType: "),
+        (lambda: gw.compare(*scanned(), progress=None), "progress of type NoneType: a function"),
+        (lambda: gw.compare(*scanned(), ahead=2e6), "ahead of type float: a gw.Ahead"),
+        (lambda: gw.compare(*scanned(), loop="no"), "loop of type str: True or False"),
+        (lambda: gw.write(real_results(), None), "folder of type NoneType: the name of a folder"),
+        (lambda: gw.write(real_results(), "out", also=None), "also = None: a list of names"),
+        (lambda: gw.write(real_results(), "out", sections=7.5), "sections = 7.5: a list of heights in mm"),
+        (lambda: gw.write(gw.study_meshing(bundled(), loss=0.1), "out", law=3), "law of type int: "),
+        (lambda: gw.as_columns(real_results().inspection, ["teeth"]), "rows = .*: one of findings, flanks, teeth"),
+        (lambda: gw.propose_design(scanned_scan()[1], module="6.35"), "module = '6.35': a number, in mm"),
+        (lambda: gw.locate("points.csv", scanned()[0].gears["pinion"]), "points of type <U10: an array of real numbers"),
+        (lambda: gw.locate(np.ones((5, 3)), scanned()[0].gears["pinion"], bands=0.3), "bands of type float"),
+        (lambda: gw.shaft_movement(scanned()[0], 3, 114.3, 0.1), "pinion of type Design: one of design.gears"),
+        (lambda: gw.study_load("pair.toml"), "design of type str: what gw.read_design"),
+        (lambda: gw.study_load(scanned()[0], load=100.0), "load of type float: a gw.LoadSpec"),
+        (lambda: gw.study_load(scanned()[0], flanks=("a", "b")), "one of flanks of type str: what gw.nominal_profiles"),
+        (lambda: gw.mesh_contact(*drawn_profiles(), 114.3, variants=drawn_profiles()), "variants = .*: a list of pairs"),
+        (lambda: gw.mesh_contact(*drawn_profiles(), 114.3, variants=[(3, 4)]), "one of variants of type int: "),
+        (lambda: gw.fit_wear_law("pinion", 3, 114.3, [1.0], [0.1]), "gear of type str: one of design.gears"),
+        (lambda: gw.fit_wear_law(*bundled().gears.values(), 114.3, "roll", [0.1]), "roll of type <U4: an array of real numbers"),
+        (lambda: gw.forecast_wear("fits", 1e6, [2e6]), "one of fits of type str: what gw.fit_wear_law returns"),
+        (lambda: gw.cycles_left(None, 1e6, 0.1, "depth"), "fits of type NoneType: what gw.fit_wear_law returns"),
+        (lambda: gw.nominal_profiles(scanned()[0]), "gear of type Design: one of design.gears"),
+        (lambda: gw.nominal_profiles(bundled().gears["gear"], z=[3.0, 2.0]), r"z of shape \(2,\): one or more finite numbers that rise"),
+        (lambda: gw.nominal_profiles(bundled().gears["gear"], radius=[np.nan]), "radius of shape"),
     ])  # fmt: skip
     def test_what_a_stage_does_not_take_is_told(self, stage, words):
         """Each ended in an AttributeError or TypeError of a module that the user does not know."""
@@ -297,6 +327,30 @@ class TestStages:
         plain = gw.as_dict(real_results())
         assert plain["wear"] == report["wear"]
 
+    @pytest.mark.parametrize(("wrong", "words"), [
+        (lambda axis: gw.figures.waterfall(axis, None), "loop of type NoneType: that of a gear whose effects"),
+        (lambda axis: gw.figures.waterfall(axis.figure, real_results().loop), "axis of type Figure: an axis of matplotlib"),
+        (lambda axis: gw.figures.contact_map(axis, "share"), r"share of type str: an array \(teeth, 2, n_z, n_L\)"),
+        (lambda axis: gw.figures.contact_map(axis, np.ones((12, 3, 4, 5))), r"share of shape \(12, 3, 4, 5\): an array \(teeth, 2"),
+        (lambda axis: gw.figures.flank_map(axis, np.ones((12, 2, 4, 5)), 100.0), "scale of type float: a .*ColourScale"),
+        (lambda axis: gw.figures.tooth_section(axis, np.ones((5, 2)), np.ones((6, 2)), 38.0), r"worn_xy of shape .* n = 5, as nominal_xy has"),
+        (lambda axis: gw.figures.tooth_section(axis, np.ones((5, 2)), np.ones((5, 2)), "38"), "reference_radius_mm = '38': a number"),
+        (lambda axis: gw.figures.thickness_per_tooth(axis, real_results()), "thickness of type Results: results.wear.thickness"),
+        (lambda axis: gw.figures.transmission_error(axis, real_results().pair), "curves of type PairResult: gw.report_arrays"),
+        (lambda axis: gw.figures.traces(axis, np.ones(4), np.ones((12, 5)), 20.0, "k"), "deviation_um of shape .* n = 4"),
+        (lambda axis: gw.figures.pair_in_mesh(axis, *bundled().gears.values(), 114.3), "exact of type float: what gw.exact_meshing"),
+        (lambda axis: gw.figures.specific_sliding(axis, 3, None), "slid of type int: study.sliding"),
+        (lambda axis: gw.figures.worn_profile(axis, real_results()), "law of type Results: results.pair.law"),
+        (lambda axis: gw.figures.across_face(axis, 3), "across of type int"),
+        (lambda axis: gw.figures.load_map(axis, None), "study of type NoneType: what gw.study_load returns"),
+        (lambda axis: gw.figures.wear_maps(axis, real_results().loop), "loop of type Loop: what results.pair.second_loop holds"),
+    ])  # fmt: skip
+    def test_what_a_figure_does_not_take_is_told(self, wrong, words):
+        from matplotlib.figure import Figure
+
+        with pytest.raises(gw.InputError, match=f"{words}.* would be right"):
+            wrong(Figure().add_subplot())
+
     def test_figures_take_an_axis_and_give_it_back(self):
         import matplotlib
 
@@ -309,6 +363,11 @@ class TestStages:
         assert gw.figures.thickness_per_tooth(axes[1], real_results().wear.thickness) is axes[1]
         assert gw.figures.transmission_error(axes[2], arrays.meshing) is axes[2]
         plt.close(figure)
+
+
+def drawn_profiles() -> tuple[gw.ToothProfiles, ...]:
+    """The example's pair as drawn."""
+    return tuple(map(gw.nominal_profiles, bundled().gears.values()))
 
 
 @cache

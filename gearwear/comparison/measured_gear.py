@@ -29,6 +29,7 @@ from gearwear.design.twist import Toothing, drawn_height, refuse
 from gearwear.diagnose.active_face import ActiveFace
 from gearwear.diagnose.effects.base import MADE, MEASURED, SCALE_LIMIT, Context, Kind
 from gearwear.diagnose.loop import Loop, make_context
+from gearwear.errors import check_kind
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.end_edge import EndEdge
 from gearwear.placing.in_cells import InCells
@@ -375,6 +376,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     InputError
         If there is no scan, or planar sections stand beside others, or the scan is of something else.
     """
+    check_kind(grid, CellGrid | None, "grid", "a CellGrid, or None,")
     check_part(design, part)
     scans = views_of(scans)
     check_streamed(scans, design.datum)

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.comparison.laying import laid_on, unstated_root
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design, check_design
+from gearwear.design.quantity import shown
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.refusal import check_gear
 from gearwear.placing.views import PlacedScan
@@ -20,8 +21,10 @@ from gearwear.scan.units import READ_WITH, check_size, extents, other_unit, oute
 def check_part(design: Design, part: str | None) -> None:
     """Refuse a part that the design has not, and what is no design."""
     check_design(design)
-    if part is not None and part not in design.gears:
-        raise InputError(f"part = {part}: the design has only {', '.join(design.gears)}")
+    if part is not None and not (isinstance(part, str) and part in design.gears):
+        raise InputError(
+            f"part = {part if isinstance(part, str) else shown(part)}: the design has only {', '.join(design.gears)}"
+        )
 
 
 def by_size(design: Design, scans: Sequence[Scan]) -> list[str]:

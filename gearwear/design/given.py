@@ -1,10 +1,15 @@
-"""What a caller may give: one of a few words, a whole number, a number."""
+"""What a caller may give: one of a few words, a whole number, a number, several of these, an array."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from numbers import Integral, Real
+from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearwear.arrays import Floats
 from gearwear.design.quantity import shown
 from gearwear.errors import InputError
 
@@ -42,3 +47,44 @@ def check_number(name: str, given: object, unit: str) -> None:
     """
     if not isinstance(given, Real) or isinstance(given, bool):
         raise InputError(f"{name} = {shown(given)}: a number{f', in {unit},' if unit else ''} would be right")
+
+
+def check_several(name: str, given: object, what: str) -> list[Any]:
+    """What was given one by one; refused where it is none that one can go through.
+
+    >>> check_several("also", 3, "names")
+    Traceback (most recent call last):
+    gearwear.errors.InputError: also = 3: a list of names would be right
+    """
+    if not isinstance(given, Iterable) or getattr(given, "ndim", 1) == 0:
+        raise InputError(f"{name} = {shown(given)}: a list of {what} would be right")
+    return list(given)
+
+
+def real_array(name: str, values: ArrayLike) -> Floats:
+    """Numbers as an array; what numpy would cast silently, words and complex numbers, are none.
+
+    >>> real_array("points", "scan.ply")
+    Traceback (most recent call last):
+    gearwear.errors.InputError: points of type <U8: an array of real numbers would be right
+    """
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "fiuO":
+            return np.asarray(array, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: rows of different lengths, or no numbers; an array of real numbers would be right") from None
+    raise InputError(f"{name} of type {array.dtype}: an array of real numbers would be right")
+
+
+def rising(name: str, values: ArrayLike) -> Floats:
+    """Lengths in mm that rise, (n,); a single one may be given as a number.
+
+    >>> rising("z", 7.5), rising("z", [1.0, 0.5])
+    Traceback (most recent call last):
+    gearwear.errors.InputError: z of shape (2,): one or more finite numbers that rise, in mm, would be right
+    """
+    array = np.atleast_1d(real_array(name, values))
+    if array.ndim != 1 or not array.size or not np.isfinite(array).all() or not (np.diff(array) > 0.0).all():
+        raise InputError(f"{name} of shape {array.shape}: one or more finite numbers that rise, in mm, would be right")
+    return array

@@ -14,9 +14,10 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card
 from gearwear.design.gear import Gear
+from gearwear.design.given import rising
 from gearwear.design.quantity import as_given, at_least, at_most, counted
 from gearwear.design.side import Side
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 
 ROUNDING = 1e-9
 """mm; of a radius that came from a diameter."""
@@ -127,7 +128,14 @@ def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None 
     radius : (n_r,) float or None
         Radii in mm, rising; None: `section_radii`.
     z : (n_z,) float or None
-        Heights of the slices in mm, rising; None: `section_heights`.
+        Heights of the slices in mm, rising, of a helical gear too: half angles are about the tooth's centre line at each height, and turn with it. None:
+        `section_heights`, which is mid-face alone unless the drawing modifies the flanks along the face. One slice stands for the whole face; wear that
+        varies along it needs heights of its own, as ``np.linspace(0.0, gear.face_width, 33)``.
+
+    Raises
+    ------
+    InputError
+        If `gear` is no gear, or radii or heights are no numbers that rise.
 
     Examples
     --------
@@ -135,8 +143,9 @@ def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None 
     >>> nominal_profiles(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).half_angle.shape
     (12, 2, 1, 200)
     """
-    radius = section_radii(gear) if radius is None else radius
-    z = section_heights(gear) if z is None else z
+    check_kind(gear, Gear, "gear", "one of design.gears")
+    radius = section_radii(gear) if radius is None else rising("radius", radius)
+    z = section_heights(gear) if z is None else rising("z", z)
     psi = gear.half_angles(radius, z)
     return ToothProfiles(gear, radius, z, np.broadcast_to(psi, (gear.teeth, *psi.shape)).copy())
 

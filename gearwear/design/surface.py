@@ -17,6 +17,7 @@ import numpy as np
 from gearwear import compiled
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
+from gearwear.design.given import check_whole, real_array
 from gearwear.design.root import fillet_table
 from gearwear.design.side import Side
 from gearwear.design.twist import hand_at, normal_lean, section_angle, segments, turn_at
@@ -203,7 +204,10 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     side is split by the point's own radius.
     """
     check_kind(gear, Gear, "gear", "one of design.gears")
-    points = np.asarray(points, dtype=np.float64)
+    check_kind(bands, Bands | None, "bands", "Bands, or None,")
+    if workers is not None:
+        check_whole("workers", workers, 1)
+    points = real_array("points", points)
     if points.ndim != 2 or points.shape[1] != 3:
         raise InputError(f"points of shape {points.shape}: (n, 3), mm in the design's frame, would be right")
     n = len(points)

@@ -10,12 +10,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow, measured
-from gearwear.design.given import check_choice, check_number, check_whole
+from gearwear.design.given import check_choice, check_number, check_several, check_whole
 from gearwear.design.load import LoadSpec
-from gearwear.design.pair import Design
+from gearwear.design.pair import Design, check_design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.side import Side
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 from gearwear.loaded.contact import SLICES, loaded_contact, loaded_variants
 from gearwear.loaded.formulas import beam_on_ring
 from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, coupling_length
@@ -26,6 +26,7 @@ from gearwear.meshing.passes import CYCLES, Cycle
 from gearwear.meshing.slices import common_width, uneven_across_face
 from gearwear.threads import on_one_thread
 
+PAIR = "profiles (pinion, gear)"
 COUPLINGS = (1.0, 1.4)
 """Coupling lengths in modules that fit three-dimensional finite elements about as well as `COUPLING_MODULES`."""
 MOST_DRAWS = 8
@@ -193,6 +194,12 @@ def study_load(
     >>> bool(study.present.stiffness.mean() > 10.0)
     True
     """
+    check_design(design)
+    check_kind(load, LoadSpec | None, "load", "a gw.LoadSpec, or None for that of the design,")
+    for profiles in check_several("flanks", () if flanks is None else flanks, PAIR):
+        check_kind(profiles, ToothProfiles, "one of flanks", "what gw.nominal_profiles returns")
+    if flanks is not None and len(flanks) != 2:
+        raise InputError(f"flanks: {len(flanks)} given; {PAIR} would be right")
     check_whole("start_tooth", start_tooth)
     check_choice("cycle", cycle, CYCLES)
     drive_side = Side.of(drive_side)

@@ -14,7 +14,7 @@ from itertools import chain
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.given import check_choice, check_number, check_whole
+from gearwear.design.given import check_choice, check_number, check_several, check_whole
 from gearwear.design.pair import CENTRE_ROUNDING
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import as_given, at_least, at_most, shown
@@ -28,6 +28,7 @@ from gearwear.meshing.slices import Slices
 from gearwear.processors import each
 from gearwear.threads import on_one_thread
 
+PAIRS = "pairs (driver, driven) of profiles"
 _LEAST_RISE = 1e-7
 """mm; where the neighbours of an extreme differ less from it, there is nothing to search for."""
 
@@ -185,8 +186,11 @@ def _check_turning(
 def _check_variants(
     driver: ToothProfiles, driven: ToothProfiles, variants: Sequence[tuple[ToothProfiles, ToothProfiles]]
 ) -> None:
-    for pair in variants:
-        for base, other in zip((driver, driven), pair, strict=True):
+    for pair in check_several("variants", variants, PAIRS):
+        if len(members := check_several("variants", pair, PAIRS)) != 2:
+            raise InputError(f"variants: {len(members)} gears in one; a list of {PAIRS} would be right")
+        for base, other in zip((driver, driven), members, strict=True):
+            check_kind(other, ToothProfiles, "one of variants", "what gw.nominal_profiles returns")
             if not (np.array_equal(base.radius, other.radius) and np.array_equal(base.z, other.z)):
                 raise InputError("a variant has other radii or heights than the gear itself: the same would be right")
 

@@ -10,7 +10,7 @@ from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.given import check_choice, check_number
 from gearwear.design.quantity import SPACE, not_zero, number, sentence
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 from gearwear.meshing.backlash import (
     BacklashKind,
     centre_distance_for_backlash,
@@ -143,6 +143,8 @@ def shaft_movement(
       in the way                 the gear's tip digs 1.096 mm into the pinion's root circle
       in the way                 the pinion's tip digs 1.096 mm into the gear's root circle
     """
+    for name, one in (("pinion", pinion), ("gear", gear)):
+        check_kind(one, Gear, name, "one of design.gears")
     check_choice("kind", kind, get_args(BacklashKind))
     return _movement(pinion, gear, centre_distance, thickness_loss, backlash, kind, closest_centre_distance(pinion, gear))
 

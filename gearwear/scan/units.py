@@ -23,7 +23,7 @@ READ_WITH = "read with units"
 
 def factor(units: str) -> float:
     """Millimetres per unit; InputError for a name that is none."""
-    if units not in UNITS:
+    if not (isinstance(units, str) and units in UNITS):
         raise InputError(f"units {units!r}: one of {', '.join(OFFERED)} would be right")
     return UNITS[units]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from gearwear.errors import InputError, check_kind
 from gearwear.scan.types import Scan
@@ -18,6 +18,8 @@ def views_of(scan: Scan | Sequence[Scan]) -> tuple[Scan, ...]:
     InputError
         If there is none, or what is given is no scan, or planar sections stand beside others.
     """
+    if not isinstance(scan, Scan | Iterable):
+        check_kind(scan, Scan, "scan", SCAN)
     views = (scan,) if isinstance(scan, Scan) else tuple(scan)
     other = next((view for view in views if not isinstance(view, Scan)), None)
     if other is not None:

@@ -15,8 +15,8 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
-from gearwear.design.given import check_choice, check_number
-from gearwear.errors import InputError
+from gearwear.design.given import check_choice, check_number, real_array
+from gearwear.errors import InputError, check_kind
 from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.threads import on_one_thread
 from gearwear.wear_law.archard import TERMS, LoadSharing, law_over, law_terms
@@ -402,6 +402,9 @@ def fit_wear_law(
     >>> fit.headline()
     'A 4.000 ± 0.024 µm · |K|, B 2.000 ± 0.038 µm, C 0.000 ± 0.035 µm; load sharing none'
     """
+    for name, one in (("gear", gear), ("mate", mate)):
+        check_kind(one, Gear, name, "one of design.gears")
+    check_number("centre_distance", centre_distance, "mm")
     profile = _Profile.of(roll, depth, std, width)
     check_number("correlation_length", correlation_length, "mm")
     if not correlation_length >= 0.0:
@@ -458,8 +461,8 @@ class _Profile:
     @classmethod
     def of(cls, roll: Floats, depth: Floats, std: Floats | None, width: Floats | float) -> _Profile:
         """As given to `fit_wear_law`; refused where the arrays do not match."""
-        roll, depth = np.asarray(roll, dtype=np.float64), np.atleast_2d(np.asarray(depth, dtype=np.float64))
-        errors = None if std is None else np.asarray(std, dtype=np.float64)
+        roll, depth = real_array("roll", roll), np.atleast_2d(real_array("depth", depth))
+        errors = None if std is None else real_array("std", std)
         points = roll.size
         if (
             roll.ndim != 1
@@ -467,7 +470,7 @@ class _Profile:
             or (errors is not None and errors.shape not in ((points,), (points, points)))
         ):
             raise InputError("wear law: lengths of roll (n,), depths (n,) or (teeth, n) and standard deviations (n,) must match")
-        return cls(roll, depth, errors, np.asarray(width, dtype=np.float64))
+        return cls(roll, depth, errors, real_array("width", width))
 
     @property
     def spread(self) -> Floats | None:

@@ -16,9 +16,9 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, few
-from gearwear.design.given import check_choice, check_number
+from gearwear.design.given import check_choice, check_number, real_array
 from gearwear.design.quantity import as_given, at_least, at_most, outside
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 from gearwear.meshing.path import PathOfContact
 from gearwear.threads import on_one_thread
 from gearwear.wear_law.archard import specific_sliding
@@ -27,6 +27,7 @@ from gearwear.wear_law.fit import WearFit, alike_fits, check_confidence
 Quantity = Literal["depth", "thickness", "backlash"]
 """Greatest depth on the path of contact (mm, normal), loss of tooth thickness (mm, arc), growth of the normal backlash (mm)."""
 
+FITS = "what gw.fit_wear_law returns"
 FAR_CYCLES_RATIO = 2.0
 """Times the cycles run, from which on a forecast is far: as much again is lost, and the contact is not what the rate was found on."""
 EARLY_CONTACT_PITCHES = 0.15
@@ -169,7 +170,7 @@ def forecast_wear(
     """
     check_confidence(confidence)
     fits = _alike(fits)
-    asked = np.atleast_1d(np.asarray(cycles, dtype=np.float64))
+    asked = np.atleast_1d(real_array("cycles", cycles))
     ahead = asked / _positive(cycles_run) - 1.0
     if not ((ahead >= -1e-12) & np.isfinite(ahead)).all():
         raise InputError(f"cycles {float(np.min(asked)):g}: must not be below the cycles run, {cycles_run:g}")
@@ -252,7 +253,11 @@ def cycles_left(
 
 
 def _alike(fits: WearFit | Sequence[WearFit]) -> tuple[WearFit, ...]:
+    if not isinstance(fits, WearFit):
+        check_kind(fits, Sequence, "fits", FITS)
     fits = (fits,) if isinstance(fits, WearFit) else tuple(fits)
+    for fit in fits:
+        check_kind(fit, WearFit, "one of fits", FITS)
     if not fits:
         raise InputError("forecast: there is no fit of the wear law, and without one there is no forecast")
     return alike_fits(fits)

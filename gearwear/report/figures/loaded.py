@@ -8,6 +8,7 @@ import numpy as np
 
 from gearwear.loaded.study import LoadedStudy
 from gearwear.report.figures.colours import BLUE, MUTED, ORANGE
+from gearwear.report.figures.given import check_axis, check_drawn
 from gearwear.report.figures.legend import legend_above
 from gearwear.report.figures.maps import shade_bar
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 def loaded_transmission_error(axis: Axes, study: LoadedStudy) -> Axes:
     """Transmission error over the revolution: under load, rigid, and of the design under the same load."""
+    check_axis(axis)
+    check_drawn(LoadedStudy, study=study)
     present, design = study.present, study.design
     turn = np.degrees(present.rotation)
     pitches = len(present.rotation) // len(design.rotation)
@@ -31,6 +34,8 @@ def loaded_transmission_error(axis: Axes, study: LoadedStudy) -> Axes:
 
 def mesh_spectrum(axis: Axes, study: LoadedStudy) -> Axes:
     """Amplitudes at multiples of the mesh frequency: rigid, loaded, and the design's under load."""
+    check_axis(axis)
+    check_drawn(LoadedStudy, study=study)
     series = (
         ("rigid", study.present.harmonics(rigid=True), ORANGE),
         ("loaded", study.present.harmonics(), BLUE),
@@ -47,6 +52,8 @@ def mesh_spectrum(axis: Axes, study: LoadedStudy) -> Axes:
 
 def load_map(axis: Axes, study: LoadedStudy) -> Axes:
     """Greatest load per width over the pinion's flank, the mean of its teeth; root at the left, the upper end above."""
+    check_axis(axis)
+    check_drawn(LoadedStudy, study=study)
     flanks = study.present.load_map()
     half = 0.5 * study.present.widths
     low, high = flanks.z - half, flanks.z + half

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.given import check_whole
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
-from gearwear.errors import check_kind
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import ALARM, BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
+from gearwear.report.figures.given import check_arrays, check_axis, check_drawn, check_numbers
 from gearwear.report.figures.legend import legend_above
 from gearwear.report.words.numbers import effect_title
 from gearwear.wear.thickness import SectionThickness
@@ -45,11 +46,15 @@ def teeth_in_a_row(teeth: int, most: int = 16) -> int:
     >>> [teeth_in_a_row(z) for z in (12, 24, 37)]
     [12, 12, 13]
     """
+    check_whole("teeth", teeth, 1)
+    check_whole("most", most, 1)
     return math.ceil(teeth / math.ceil(teeth / most))
 
 
 def thinned(values: Floats, most: int = 120_000) -> Floats:
     """The same maps with fewer cells, by means over blocks of what was seen, where there are more than `most` in all."""
+    check_arrays(values=(values, ("teeth", 2, "n_z", "n_L")))
+    check_whole("most", most, 1)
     factor = math.ceil(math.sqrt(values.size / most))
     if factor == 1:
         return values
@@ -79,6 +84,11 @@ def flank_map(axis: Axes, values_um: Floats, scale: ColourScale, across: int | N
     Axes
         Its image runs from −1 to 1 on the scale.
     """
+    check_axis(axis)
+    check_arrays(values_um=(values_um, ("teeth", 2, "n_z", "n_L")))
+    check_drawn(ColourScale, scale=scale)
+    if across is not None:
+        check_whole("across", across, 1)
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -146,6 +156,9 @@ def shade_bar(axis: Axes, shades: str | Colormap, low: float, high: float, label
 
 def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ too much, − missing)", high: float = 1.0) -> Axes:
     """Draw the legend of the signed scale on `axis`, up to `high` on it; 0: of depths, which have no sign."""
+    check_axis(axis)
+    check_drawn(ColourScale, scale=scale)
+    check_numbers(high=high)
     shade_bar(axis, colours(), -1.0, 1.0, label)
     ticks = [
         (at, text)
@@ -160,6 +173,7 @@ def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ t
 
 def contact_map(axis: Axes, share: Floats) -> Axes:
     """Contact pattern: dark where a cell is touched at every passing, white where never (arrays as `flank_map`, 0 … 1)."""
+    check_arrays(share=(share, ("teeth", 2, "n_z", "n_L")))
     flank_map(axis, share, ColourScale(1.0))
     axis.images[-1].set(cmap="Blues", clim=(0.0, 1.0))
     return axis
@@ -179,7 +193,8 @@ def waterfall(axis: Axes, loop: Loop) -> Axes:
     -------
     Axes
     """
-    check_kind(loop, Loop, "loop", "that of a gear whose effects were looked for (loop=True, gw.find_effects)")
+    check_axis(axis)
+    check_drawn(Loop, loop=loop)
     effects = [effect for effect in loop.effects if effect.kind is not Kind.WEAR]
     bars = [("after registration", 0.0, 1e3 * loop.rms_before, 1e3 * loop.held_out_before, MUTED)]
     for effect in effects:
@@ -241,6 +256,9 @@ def tooth_section(axis: Axes, nominal_xy: Floats, worn_xy: Floats, reference_rad
     -------
     Axes
     """
+    check_axis(axis)
+    check_arrays(nominal_xy=(nominal_xy, ("n", 2)), worn_xy=(worn_xy, ("n", 2)))
+    check_numbers(reference_radius_mm=reference_radius_mm, magnify=magnify)
     shown = nominal_xy + magnify * (worn_xy - nominal_xy)
     axis.fill(
         np.concatenate([nominal_xy[:, 0], shown[::-1, 0]]), np.concatenate([nominal_xy[:, 1], shown[::-1, 1]]),
@@ -272,6 +290,8 @@ def magnification(nominal_xy: Floats, worn_xy: Floats, share: float = 0.06) -> f
     >>> magnification(line, line + [0.01, 0.0])
     50.0
     """
+    check_arrays(nominal_xy=(nominal_xy, ("n", 2)), worn_xy=(worn_xy, ("n", 2)))
+    check_numbers(share=share)
     worst = float(np.hypot(*(worn_xy - nominal_xy).T).max(initial=0.0))
     wanted = share * float(np.ptp(nominal_xy[:, 1])) / max(worst, 1e-9)
     return max((f for f in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0) if f <= wanted), default=1.0)
@@ -291,6 +311,8 @@ def usual_range(values: Floats) -> tuple[float, float]:
 
 def thickness_per_tooth(axis: Axes, thickness: SectionThickness, place: str = "at the reference circle") -> Axes:
     """Arc thickness, `place` says where: the mean over the face and the least, tooth by tooth, against the design."""
+    check_axis(axis)
+    check_drawn(SectionThickness, thickness=thickness)
     teeth = thickness.teeth()
     tooth = np.array([tooth.tooth + 1.0 for tooth in teeth])
     names = ("mean", "least", "nominal", "least_std")
@@ -320,6 +342,8 @@ def thickness_per_tooth(axis: Axes, thickness: SectionThickness, place: str = "a
 
 def transmission_error(axis: Axes, curves: MeshingCurves, label: str = "worn") -> Axes:
     """Transmission error of the worn gear over one revolution; the design's is zero."""
+    check_axis(axis)
+    check_drawn(MeshingCurves, curves=curves)
     axis.axhline(0.0, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     axis.plot(curves.rotation_deg, curves.transmission_error_um, color=BLUE, label=label)
     axis.set(xlabel="rotation of the pinion, °", ylabel="transmission error on\nthe line of action, µm")
@@ -331,6 +355,8 @@ def transmission_error(axis: Axes, curves: MeshingCurves, label: str = "worn") -
 
 def backlash(axis: Axes, curves: MeshingCurves, label: str = "worn") -> Axes:
     """Circumferential backlash over one revolution, design against worn."""
+    check_axis(axis)
+    check_drawn(MeshingCurves, curves=curves)
     axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_design_um, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_worn_um, color=ORANGE, label=label)
     axis.set(xlabel="rotation of the pinion, °", ylabel="circumferential\nbacklash, mm")
@@ -370,6 +396,9 @@ def traces(axis: Axes, along_mm: Floats, deviation_um: Floats, um_per_tooth: flo
     -------
     Axes
     """
+    check_axis(axis)
+    check_arrays(along_mm=(along_mm, ("n",)), deviation_um=(deviation_um, ("teeth", "n")))
+    check_numbers(um_per_tooth=um_per_tooth)
     teeth = len(deviation_um)
     number = np.arange(1, teeth + 1)
     axis.vlines(number, along_mm[0], along_mm[-1], color=RULE, lw=0.8, zorder=1)
@@ -401,6 +430,9 @@ def outline(axis: Axes, nominal_xy: Floats, worn_xy: Floats, deviation_um: Float
     -------
     Axes
     """
+    check_axis(axis)
+    check_arrays(nominal_xy=(nominal_xy, ("m", 2)), worn_xy=(worn_xy, ("n", 2)), deviation_um=(deviation_um, ("n",)))
+    check_drawn(ColourScale, scale=scale)
     from matplotlib.collections import LineCollection
 
     axis.fill(*nominal_xy.T, color="#eef1f3", lw=0)

@@ -13,6 +13,7 @@ from gearwear.design.gear import Gear
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.path import PathOfContact, Sliding
 from gearwear.report.figures.colours import BLUE, INK, MUTED, ORANGE, RULE, TEAL
+from gearwear.report.figures.given import check_axis, check_drawn
 from gearwear.report.figures.legend import legend_above
 
 if TYPE_CHECKING:
@@ -38,6 +39,9 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
     -------
     Axes
     """
+    check_axis(axis)
+    check_drawn(Gear, pinion=pinion, gear=gear)
+    check_drawn(ExactMeshing, exact=exact)
     from matplotlib.patheffects import withStroke
 
     alpha, path, centre = exact.working_pressure_angle, exact.path, exact.centre_distance
@@ -127,6 +131,9 @@ def specific_sliding(axis: Axes, slid: Sliding, path: PathOfContact) -> Axes:
     -------
     Axes
     """
+    check_axis(axis)
+    check_drawn(Sliding, slid=slid)
+    check_drawn(PathOfContact, path=path)
     axis.plot(slid.roll_pinion, slid.specific_pinion, color=BLUE, label="pinion")
     axis.plot(slid.roll_pinion, slid.specific_gear, color=ORANGE, linestyle=(0, (6, 2)), label="gear")
     lowest = min(slid.specific_pinion.min(), slid.specific_gear.min())
@@ -137,6 +144,9 @@ def specific_sliding(axis: Axes, slid: Sliding, path: PathOfContact) -> Axes:
 
 def sliding_velocity(axis: Axes, slid: Sliding, path: PathOfContact) -> Axes:
     """Sliding velocity along the path of contact, at 1 rad/s of the pinion; arguments as `specific_sliding`."""
+    check_axis(axis)
+    check_drawn(Sliding, slid=slid)
+    check_drawn(PathOfContact, path=path)
     axis.plot(slid.roll_pinion, slid.velocity, color=TEAL, label="gear over pinion, + towards the pinion's tip")
     axis.set_ylim(1.15 * min(slid.velocity[0], 0.0) - 0.5, 1.3 * max(slid.velocity[-1], 0.0) + 0.5)
     axis.set_ylabel("sliding velocity at\n1 rad/s of the pinion, mm/s")

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearwear.design.given import check_several
+from gearwear.report.figures.given import check_axis, check_drawn
 from gearwear.report.figures.maps import shade_bar
 from gearwear.running.found import SecondLoop
 
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
 
 def wear_maps(axes: Sequence[Axes], loop: SecondLoop) -> None:
     """Mean depth over the flank, root at the left: measured, law and, where effects were found and there is an axis for it, run; one scale for all."""
+    check_drawn(SecondLoop, loop=loop)
+    for axis in check_several("axes", axes, "axes of matplotlib"):
+        check_axis(axis, "one of axes")
     place = loop.map
     maps = [("measured", place.mean), ("wear law alone", loop.law), ("with the effects", loop.depth)][: len(axes)]
     top = 1e3 * max(float(values.max()) for _, values in maps)

@@ -9,6 +9,7 @@ import numpy as np
 from gearwear.design.quantity import NORMAL_95
 from gearwear.errors import InputError
 from gearwear.report.figures.colours import ALARM, BLUE, MUTED, ORANGE
+from gearwear.report.figures.given import check_axis, check_drawn
 from gearwear.report.figures.legend import legend_above
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 def worn_profile(axis: Axes, law: WearStudy) -> Axes:
     """Mean depth of the worn flanks along the profile, and the law fitted to it; metal is lost downwards."""
+    check_axis(axis)
+    check_drawn(WearStudy, law=law)
     fit, path, (roll, depth) = law.best, law.path, law.over_path
     if fit is None or path is None:
         raise InputError(f"nothing to draw: {law.why_not}")
@@ -37,6 +40,8 @@ def worn_profile(axis: Axes, law: WearStudy) -> Axes:
 
 def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
     """Greatest depth of the mean flank against cycles with its band, and limits with the cycles that reach them."""
+    check_axis(axis)
+    check_drawn(WearStudy, law=law)
     forecast = law.forecast
     if forecast is None:
         raise InputError("nothing to draw: no forecast; one of ahead=gw.Ahead(cycles_run, cycles) would be right")
@@ -65,6 +70,8 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
 
 def across_face(axis: Axes, across: AcrossFace) -> Axes:
     """Mean depth of the worn flanks across the face; metal is lost downwards."""
+    check_axis(axis)
+    check_drawn(AcrossFace, across=across)
     axis.axhline(1e3 * across.mean, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="mean")
     error = 1e3 * NORMAL_95 * across.std
     axis.errorbar(across.z, 1e3 * across.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, row by row")
