@@ -22,7 +22,7 @@ from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
 from gearwear.wear.section_ends import beyond_flanks, rounded_off
 from gearwear.wear.section_sums import SectionSums
-from gearwear.wear.tooth_summary import DriftSeam, MostLost, ThinnestTooth, ToothSummary, UnmeasuredTeeth
+from gearwear.wear.tooth_summary import DriftSeam, MostLost, ThinnestTooth, ToothSummary, UnmeasuredTeeth, Wider
 from gearwear.wear.windows import about_places, running_sum
 
 LEAST_POINTS = 3
@@ -366,23 +366,31 @@ class SectionThickness(Card):
         least, at_z, drawn = self._least_arc
         value, std = least.overall, least.overall_std
         low, high = value - NORMAL_95 * std, value + NORMAL_95 * std
+        own, by = (low, high), dict[Wider, tuple[float, float]]()
         if self.pooled > 1:
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
-            low = min(low, float(self.arc[at] - self.std[at]), self.pit_bottom)
+            by[Wider.HOLLOW] = float(self.arc[at] - self.std[at]), high
+            by[Wider.PITS] = self.pit_bottom, high
         other = None if self.unmeasured is None else self.unmeasured.least
         if other is not None:
-            low, high = min(low, other.low), min(high, other.high)
+            by[Wider.FEW] = other.low, other.high
         if self.surfaces is not None:  # they may be right where sections hide a hollow
             by_surface, its, _ = self.surfaces.least(self.common_std)
-            low = min(low, float((by_surface - NORMAL_95 * WIDER * its).min()))
+            hidden = float((by_surface - NORMAL_95 * WIDER * its).min())
+            by[Wider.HOLLOW] = min(hidden, by.get(Wider.HOLLOW, own)[0]), high
+        low, high = min([low, *(one for one, _ in by.values())]), max([high, *(one for _, one in by.values())])
+        by[Wider.EITHER] = own[0] + self.otherwise[0], own[1] + self.otherwise[1]
         low, high = low + self.otherwise[0], high + self.otherwise[1]
         if self.seam is not None:
+            by[Wider.SEAM] = self.seam.low, self.seam.high
             low, high = min(low, self.seam.low), max(high, self.seam.high)
+        most = max(by, key=lambda why: max(own[0] - by[why][0], by[why][1] - own[1]))
+        wider = most if by[most][0] < own[0] or by[most][1] > own[1] else None
         if other is not None and other.value < value:
-            return replace(other, low=low, high=high)
+            return replace(other, low=low, high=high, wider=wider)
         nominal = self.nominal if self.drawn is None else float(drawn[least.curve])
-        return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]), nominal)
+        return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]), nominal, wider)
 
 
 def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:

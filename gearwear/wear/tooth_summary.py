@@ -4,6 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Wider(StrEnum):
+    """What makes the interval of the least thickness wider than its standard deviation says, in words beside a number, without a comma."""
+
+    HOLLOW = "a hollow may be deeper"
+    PITS = "pits may be deeper"
+    FEW = "teeth measured in few sections"
+    EITHER = "made so or scanned so"
+    SEAM = "pitch errors or a drift of the scan"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +68,8 @@ class ThinnestTooth:
         Height on that tooth, mm.
     nominal : float
         Arc as drawn there, mm.
+    wider : Wider or None
+        What makes the interval most wider than `std` says; None: nothing.
     """
 
     tooth: int
@@ -66,6 +79,7 @@ class ThinnestTooth:
     high: float
     at_z: float
     nominal: float
+    wider: Wider | None = None
 
 
 @dataclass(frozen=True, slots=True)

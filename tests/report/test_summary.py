@@ -74,6 +74,13 @@ def test_the_summary_has_the_verdict_the_figures_and_the_folder():
         assert part in text
 
 
+def test_the_only_worn_flank_is_named_beside_the_lost_volume():
+    """It read "from the right flank of tooth…"."""
+    results = changed(fake_results(), "wear.found.regions", fake_results().wear.regions[:1])
+    (line,) = (line for line, _ in lines(results, 80) if line.startswith("  Metal lost"))
+    assert line.replace("\u202f", " ").replace("\u00a0", " ").rstrip().endswith("tooth 2, left flank")
+
+
 @pytest.mark.parametrize("width", [80, 100])
 def test_what_was_found_besides_wear_ends_with_its_sentence(width):
     """An effect cut off in its size, or before what it cannot be told from, tells less than the number of those left out."""

@@ -461,6 +461,15 @@ def test_the_thinnest_tooth_is_an_interval_where_that_reaches_far_to_one_hand(lo
     assert thinnest_words(ThinnestTooth(1, 9.66111, 0.00402, low, high, 3.2, 9.975)).replace(SPACE, " ") == told
 
 
+@pytest.mark.parametrize(("pit", "because"), [(8.0, "pits may be deeper"), (math.inf, ""), (8.394, "")])
+def test_the_thinnest_tooth_as_an_interval_has_its_reason(pit, because):
+    """Tooth 2 is 9.9746 mm less 1.58 thick: pits that go down to 8 mm say more of it than its standard deviation, to 8.394 mm they do not."""
+    results = changed(fake_results(), "wear.thickness.pit_bottom", pit)
+    (figure,) = (one for one in key_figures(results) if one.name == "Thinnest tooth")
+    assert ((" to " in spoken(figure.value)), because in figure.note) == (bool(because), True)
+    assert spoken(figure.note).startswith(f"tooth 2; {because}; at z" if because else "tooth 2 at z")
+
+
 @pytest.mark.parametrize(("limits", "told"), [(None, ""), ((0.1159, 0.2591), "116 to 259 µm"), ((0.0, 0.259), "0 to 259 µm")])
 def test_the_deepest_place_is_an_interval_where_more_than_its_deviation_is_open(limits, told):
     (region,) = fake_regions()[:1]

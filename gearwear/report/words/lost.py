@@ -83,7 +83,9 @@ def where_lost(results: Results) -> str:
     if not regions:
         beside = f"not excluded{why}" if open_ else ""
         return "; ".join(filter(None, (beside, "no region stands out", _too_faint(results))))
-    where = f"from {which_flanks(regions, results.wear.found, 'seen')}"  # room is short beside a number
+    # Room is short beside a number: the words before that of the only flank would leave none for it.
+    only = f"tooth {regions[0].tooth + 1}, {regions[0].side} flank"
+    where = only if len(regions) == 1 else f"from {which_flanks(regions, results.wear.found, 'seen')}"
     beside = _too_faint(results)
     if _beyond(results):
         where, beside = f"{_with_own_std(results)} stands out", why.removeprefix("; ")

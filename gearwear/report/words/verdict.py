@@ -309,10 +309,9 @@ def key_figures(results: Results) -> list[KeyFigure]:
     tooth = wear.thinnest
     if tooth is not None:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
+        why = f"; {tooth.wider}; {where.strip()}" if tooth.wider is not None and lopsided(tooth) else where
         across = "" if results.gear.twist == 0.0 else ", transverse arc"
-        note = (
-            f"tooth {tooth.tooth + 1}{where}; design {number(tooth.nominal, 3)}{SPACE}mm, {thickness_place(results.gear)}{across}"
-        )
+        note = f"tooth {tooth.tooth + 1}{why.removesuffix('; ')}; design {number(tooth.nominal, 3)}{SPACE}mm, {thickness_place(results.gear)}{across}"
         key.append(KeyFigure("Thinnest tooth", thinnest_words(tooth), note))
     if results.pair is not None:
         key += _contact_figures(results)
@@ -368,9 +367,14 @@ def _contact_figure(
 
 def thinnest_words(tooth: ThinnestTooth) -> str:
     """The least thickness, with its standard deviation; the 95 % interval in its place where that reaches much further."""
-    if max(tooth.value - tooth.low, tooth.high - tooth.value) > LOPSIDED * tooth.std > 0.0:
+    if lopsided(tooth):
         return between((tooth.low, tooth.high), 3, "mm")
     return known(tooth.value, tooth.std, 3, "mm", 0.0)
+
+
+def lopsided(tooth: ThinnestTooth) -> bool:
+    """Whether the 95 % interval of the least thickness reaches so much further than its standard deviation says that it is told in its place."""
+    return max(tooth.value - tooth.low, tooth.high - tooth.value) > LOPSIDED * tooth.std > 0.0
 
 
 def known(value: float, std: float, digits: int, unit: str = "", least: float = LEAST_STD) -> str:
