@@ -20,10 +20,8 @@ import numpy as np
 from scipy.special import chdtri
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
-from gearwear.design.tolerance import profile_form_tolerance
 from gearwear.diagnose.columns import CellColumns, cuts_among
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary
@@ -40,10 +38,11 @@ from gearwear.diagnose.flank_columns import (
     on_worn,
     wear_columns,
 )
+from gearwear.diagnose.flank_forms import FlankForms, SideLoss, WornCost, least_of
 from gearwear.diagnose.flanks_differ import differ_more
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import tell_of_wear
-from gearwear.diagnose.pitch_point import as_slid, likeliest
+from gearwear.diagnose.pitch_point import likeliest
 from gearwear.diagnose.robust_fit import SETTLED, Robust, Shares, robust_fit
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Around, Problem, exchange, free_penalty
@@ -101,7 +100,7 @@ def side_costs(
     found: list[Any] = each([*made_calls, *scan.asked(model, laws)])
     (plain, alike, apart), lost = found[: len(profiles)], _of_sides(laws, found[len(profiles) :])
     made = min(plain.cost, alike.cost)
-    unworn = min(made, apart.cost + scan.forms_apart(apart.profile))
+    unworn = min(made, apart.cost + scan.forms.forms_apart(apart.profile))
     beside = dict[Side, tuple[Floats, float]]()
     for side in Side if apart.cost < made else ():
         if frozenset({side}) in ruled_out:
@@ -109,7 +108,7 @@ def side_costs(
         others = apart.needed[apart.needed // shared.shape[1] == side.opposite.index]
         if len(others):
             of_others = np.where(fit.cells.points.side == int(side), 0.0, apart.profile)
-            beside[side] = by_side[0][:, others], _price(by_side[1][others]) + scan.forms_apart(of_others)
+            beside[side] = by_side[0][:, others], _price(by_side[1][others]) + scan.forms.forms_apart(of_others)
     tenable = scan.tenable(model, lost, apart.cost < made, unworn, beside)
     other, pitch = scan.pitch_point(model), dict[frozenset[Side], float]()
     if other is not None:
@@ -122,23 +121,6 @@ def side_costs(
                 tenable[sides], pitch[sides] = replace(least, cost=least.cost + paid), roll
     uncommon = max(tenable[frozenset(Side)].uncommon, by_reliefs(model, problem)) if frozenset(Side) in tenable else 0.0
     return SideCosts({NO_SIDE: unworn} | {sides: least.cost for sides, least in tenable.items()}, made, uncommon, pitch)
-
-
-@dataclass(frozen=True, slots=True)
-class _Loss:
-    """What flanks may have lost, (m,) mm, the mean of all teeth; the cost with it; and whether teeth have lost more and less of it."""
-
-    cost: float
-    loss: Floats
-    uneven: bool
-
-
-@dataclass(frozen=True, slots=True)
-class _Worn:
-    """The least cost of wear on some sides, and how uncommon flanks made with the form of what they lost are, where both sides have lost it."""
-
-    cost: float
-    uncommon: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +151,7 @@ class _Scan:
         return {}
 
     @cached_property
-    def _worn(self) -> dict[tuple[tuple[int, ...], bytes], list[_Loss]]:
+    def _worn(self) -> dict[tuple[tuple[int, ...], bytes], list[SideLoss]]:
         """Losses of given shapes beside given models."""
         return {}
 
@@ -197,6 +179,11 @@ class _Scan:
     def rows(self) -> Ints:
         """The cells that a fit may use."""
         return np.flatnonzero(self.sound)
+
+    @cached_property
+    def forms(self) -> FlankForms:
+        """Those of the flanks, on these cells."""
+        return FlankForms(self.fit.cells, self.rows, self.problem.context.pitch_roll)
 
     @cached_property
     def _seen(self) -> Bools:
@@ -244,18 +231,18 @@ class _Scan:
         """What some sides, each of `answers`, may have lost by the laws of wear."""
         return [(worn, *law) for worn in answers for law in laws_of_wear(self.fit.cells, self.problem.context, worn)]
 
-    def asked(self, model: Model, laws: Sequence[_Law]) -> list[Callable[[], list[_Loss]]]:
+    def asked(self, model: Model, laws: Sequence[_Law]) -> list[Callable[[], list[SideLoss]]]:
         """Calls for the losses of some shapes, begun with a model."""
         return [partial(self.losses, model, *law) for law in laws]
 
     def tenable(
         self,
         model: Model,
-        lost: Mapping[frozenset[Side], list[_Loss]],
+        lost: Mapping[frozenset[Side], list[SideLoss]],
         any_shape: bool,
         unworn: float,
         beside: Mapping[Side, tuple[Floats, float]],
-    ) -> dict[frozenset[Side], _Worn]:
+    ) -> dict[frozenset[Side], WornCost]:
         """The least cost of each hypothesis that is tenable: sides worn, by what they `lost` by a law or, on one side, in any shape; and one side worn
         beside a form of the other (columns (m, k), and its price)."""
         # As free as the profile that it may have been made with, but for what wear never does.
@@ -265,9 +252,11 @@ class _Scan:
         slid = [partial(self.beside(made).slid_cost, model, side, unworn, paid) for side, (made, paid) in beside.items()]
         found: list[Any] = each([*self.asked(model, free), *slid])
         of_no_shape = _of_sides(free, found[: len(free)])
-        answers = [(worn, self._least_worn(worn, losses, of_no_shape.get(worn, []), unworn)) for worn, losses in lost.items()]
+        answers = [
+            (worn, self.forms.least_worn(worn, losses, of_no_shape.get(worn, []), unworn)) for worn, losses in lost.items()
+        ]
         answers += [(frozenset({side}), least) for side, least in zip(beside, found[len(free) :], strict=True)]
-        tenable = dict[frozenset[Side], _Worn]()
+        tenable = dict[frozenset[Side], WornCost]()
         for sides, least in answers:
             if least is not None and (sides not in tenable or least.cost < tenable[sides].cost):
                 tenable[sides] = least
@@ -311,17 +300,6 @@ class _Scan:
         profile = free[:, needed] @ fitted.amplitudes[own.shape[1] :]
         return _Made(fitted.square / self.problem.unit + self._named(model) + _price(price[needed]), needed, profile)
 
-    def forms_apart(self, profile: Floats) -> float:
-        """By how much, in cost, forms (m,) of left and right that differ so are less common than forms alike: of each 95 % keep the tolerance of the gear's
-        class, and what they have in common is its design's."""
-        grid = self.fit.cells.grid
-        apart = self._by_column(profile, Side.LEFT) - self._by_column(profile, Side.RIGHT)
-        seen = np.isfinite(apart)
-        line = np.column_stack([np.ones(grid.flank), 0.5 * (grid.roll_edges[:-1] + grid.roll_edges[1:])])[seen]
-        form = np.ptp(apart[seen] - line @ np.linalg.lstsq(line, apart[seen])[0]) if seen.any() else 0.0
-        tolerance = profile_form_tolerance(grid.gear.normal_module, grid.gear.tolerance.flank_class)
-        return (NORMAL_95 * float(form) / tolerance) ** 2 / len(Side)  # the variance of a difference is that of both
-
     def _needed(self, model: Model, free: Floats, price: Floats, weight: Floats) -> Ints:
         """Which of some columns gain more beside a model than they cost, one after the other."""
         own, count = self.columns(model), free.shape[1]
@@ -337,78 +315,13 @@ class _Scan:
             chosen, rest = np.append(chosen, rest[best]), np.delete(rest, best)
         return chosen
 
-    def slid_cost(self, model: Model, side: Side, unworn: float, paid: float) -> _Worn | None:
+    def slid_cost(self, model: Model, side: Side, unworn: float, paid: float) -> WornCost | None:
         """Of the best model beside wear on a side as sliding leaves it, with what is `paid` for a form of the other; None where it has none of that."""
         law, on = wear_columns(self.fit.cells, self.problem.context, frozenset({side}))
         losses = self.losses(model, frozenset({side}), law, on)
-        return _least([self._or_as_cut(lost, side, lost.cost + paid, unworn) for lost in losses])
+        return least_of([self.forms.or_as_cut(lost, side, lost.cost + paid, unworn) for lost in losses])
 
-    def _or_as_cut(self, lost: _Loss, side: Side, cost: float, unworn: float) -> float:
-        """What a loss costs: no less than `unworn` where all teeth have it alike, and flanks of the gear's class may be cut with it, or no load leaves it."""
-        as_cut = self._within(lost, side, self.fit.cells.grid.gear.tolerance.flank_class) or not self._as_slid(lost.loss, side)
-        return max(cost, unworn) if as_cut and not lost.uneven else cost
-
-    def _within(self, lost: _Loss, side: Side, flank_class: int | None) -> bool:
-        """Whether flanks of a class may be cut with the form of a loss."""
-        return self._in_tolerance(lost, side, flank_class) <= 1.0
-
-    def _in_tolerance(self, lost: _Loss, side: Side, flank_class: int | None) -> float:
-        """The form of a loss in the form tolerance of a class."""
-        return self._form(lost.loss, side) / profile_form_tolerance(self.fit.cells.grid.gear.normal_module, flank_class)
-
-    def _uncommon(self, lost: _Loss) -> float:
-        """By how much, in cost, a form that both sides lost is less common among flanks of the gear's class than none: 95 % of them keep the tolerance."""
-        flank_class = self.fit.cells.grid.gear.tolerance.flank_class
-        return (NORMAL_95 * min(self._in_tolerance(lost, side, flank_class) for side in Side)) ** 2
-
-    def _least_worn(self, worn: frozenset[Side], losses: list[_Loss], of_no_shape: list[_Loss], unworn: float) -> _Worn | None:
-        """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these.
-
-        A loss of no shape that wear has by itself, which all teeth have alike, costs no less than `unworn` where flanks of the gear's class may be cut
-        with it, or where no load leaves it; and no loss of one side of a form that ground flanks have, where all are by chance alone cheaper.
-        """
-        if len(worn) > 1:
-            both = min(losses, key=lambda lost: lost.cost, default=None)
-            return None if both is None else _Worn(both.cost, self._uncommon(both))
-        (side,) = worn
-        costs = [self._or_as_cut(lost, side, lost.cost, unworn) for lost in of_no_shape]
-        chance = all(lost.cost > unworn - rules().close for lost in (*losses, *of_no_shape))
-        for lost in losses:
-            # By chance alone cheaper than a form that ground flanks have.
-            made = chance and not lost.uneven and self._within(lost, side, rules().ground_class)
-            costs.append(max(lost.cost, unworn) if made else lost.cost)
-        return _least(costs)
-
-    def _on_flanks(self, side: Side) -> Ints:
-        """The cells that a fit may use on the flanks of a side."""
-        points = self.fit.cells.points
-        rows: Ints = self.rows[((points.surface == FLANK) & (points.side == int(side)))[self.rows]]
-        return rows
-
-    def _form(self, loss: Floats, side: Side) -> float:
-        """How far a loss (m,) on the flanks of a side lies off a slope and a lead, peak to peak, mm."""
-        points = self.fit.cells.points
-        rows = self._on_flanks(side)
-        roll, height = points.roll[rows], points.position[rows, 2]
-        plane = np.column_stack([np.ones(len(rows)), roll, height, roll * height])
-        return float(np.ptp(loss[rows] - plane @ np.linalg.lstsq(plane, loss[rows])[0]))
-
-    def _as_slid(self, loss: Floats, side: Side) -> bool:
-        """`as_slid` of a loss (m,) on the flanks of a side."""
-        grid, lost = self.fit.cells.grid, -self._by_column(loss, side)
-        seen, edges = np.isfinite(lost), grid.roll_edges
-        way = 0.5 * (edges[:-1] + edges[1:])[seen] - self.problem.context.pitch_roll
-        return as_slid(lost[seen], way, profile_form_tolerance(grid.gear.normal_module, rules().ground_class))
-
-    def _by_column(self, values: Floats, side: Side) -> Floats:
-        """(columns,) means of values (m,) on the flanks of a side; nan where no cell may be used."""
-        grid, rows = self.fit.cells.grid, self._on_flanks(side)
-        column = grid.flank_column(self.fit.cells.points.roll[rows])
-        number = np.bincount(column, minlength=grid.flank)
-        means = np.bincount(column, values[rows], grid.flank) / np.maximum(number, 1)
-        return np.where(number > 0, means, np.nan)
-
-    def losses(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[_Loss]:
+    def losses(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[SideLoss]:
         """The losses of some shapes on some sides, each beside the best model; none where what these have in common is none of them.
 
         The search begins with what it chose without wear, with what of that the scanner did, and with nothing: what stood in for wear may be
@@ -418,7 +331,7 @@ class _Scan:
         fewer = {_columns_of(start): start for start in (self._known(by_scanner), self._known(()))}
         # One set of weights tells all of them which cells to believe: those that the richest ends with.
         wide, gram = self._beside(law, self._losses(model, law, sides)[2].weight)
-        added, tried, losses = np.arange(wide.count - law.shape[1], wide.count), dict[bytes, Around](), list[_Loss]()
+        added, tried, losses = np.arange(wide.count - law.shape[1], wide.count), dict[bytes, Around](), list[SideLoss]()
         for start in [model, *(start for start in fewer.values() if len(start) < len(model))]:
             beside = self.problem.columns(start)
             kept = gram.solve_non_negative(beside, added)[len(beside) :] > 0.0
@@ -435,7 +348,7 @@ class _Scan:
             losses += self._worn[key]
         return losses
 
-    def _losses_beside(self, searched: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[_Loss]:
+    def _losses_beside(self, searched: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[SideLoss]:
         """Losses of some shapes beside a model: the same on all teeth, and with a share of it on each."""
         law, sides, fitted = self._losses(searched, law, sides)
         if _lost_on(sides) != worn:
@@ -464,10 +377,10 @@ class _Scan:
         if uneven and len(worn) == 1:
             (side,), made = worn, self.columns(searched) @ alone.amplitudes[: -by_tooth.count]
             uneven = self._differ_more(self.on_all(self.fit.target[self.rows] - made), self.on_all(alone.weight), loss, side)
-        losses = [_Loss(common, loss, uneven)]
+        losses = [SideLoss(common, loss, uneven)]
         if share.min() >= 0.0:
             paid = price + rules().parameter_penalty * more + self._named(searched)
-            losses.append(_Loss(alone.square / self.problem.unit + paid, loss, uneven))
+            losses.append(SideLoss(alone.square / self.problem.unit + paid, loss, uneven))
         return losses
 
     def _alike(self, model: Model, loss: Floats, worn: frozenset[Side], first: Floats) -> Robust:
@@ -522,16 +435,12 @@ class _Scan:
         return Problem(with_law, gram, self.problem.unit, self.problem.context, self.problem.always)
 
 
-def _of_sides(laws: Sequence[_Law], found: Sequence[list[_Loss]]) -> dict[frozenset[Side], list[_Loss]]:
+def _of_sides(laws: Sequence[_Law], found: Sequence[list[SideLoss]]) -> dict[frozenset[Side], list[SideLoss]]:
     """The losses found by some laws, by the sides that are worn."""
-    lost = dict[frozenset[Side], list[_Loss]]()
+    lost = dict[frozenset[Side], list[SideLoss]]()
     for (worn, _, _), losses in zip(laws, found, strict=True):
         lost.setdefault(worn, []).extend(losses)
     return lost
-
-
-def _least(costs: list[float]) -> _Worn | None:
-    return _Worn(min(costs)) if costs else None
 
 
 def _price(columns: Floats) -> float:

@@ -21,11 +21,12 @@ from gearwear.diagnose.effects.thickness_variation import EFFECT as THICKNESS_VA
 from gearwear.diagnose.effects.tip_relief import EFFECT as TIP_RELIEF
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.flank_columns import loss_by_tooth, wear_columns
+from gearwear.diagnose.flank_forms import FlankForms, SideLoss
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.masks import not_stray
 from gearwear.diagnose.pitch_point import as_slid
 from gearwear.diagnose.side_costs import NO_SIDE, SideCosts, by_reliefs
-from gearwear.diagnose.worn_sides import _Loss, _Scan
+from gearwear.diagnose.worn_sides import _Scan
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.diagnose.plain import PLAIN, PLAIN_AND_ALL
 from tests.placing.placing import designed
@@ -218,8 +219,8 @@ def test_a_form_is_as_uncommon_as_its_square_in_that_of_which_five_in_a_hundred_
     # 1 − x² off its chord, as wide as the form tolerance of class 5: 0.55 m + 5 µm. A slope on top is no form.
     hollow = 1e-3 * (0.55 * 6.35 + 5.0) * size * (1.0 - way**2)
     loss = np.where(flank, -(hollow + 0.05 * way) * np.where(points.side == int(Side.LEFT), 1.0, 1.5), 0.0)
-    scan = _Scan(SimpleNamespace(cells=cells), None, flank & cells.seen)
-    assert scan._uncommon(_Loss(0.0, loss, False)) == pytest.approx(1.96**2 * squared, rel=0.2)
+    forms = FlankForms(cells, np.flatnonzero(flank & cells.seen), PINION.reference_roll)
+    assert forms.uncommon(SideLoss(0.0, loss, False)) == pytest.approx(1.96**2 * squared, rel=0.2)
 
 
 @pytest.mark.long
@@ -346,12 +347,12 @@ def test_forms_of_left_and_right_cost_what_their_difference_is_rare(flank_class,
     off_line = turns - np.polyval(np.polyfit(middles, turns, 1), middles)
     by_turns = np.where(flank, 0.02 * (off_line / np.ptp(off_line))[cells.grid.flank_column(roll)], 0.0)
     left = flank & (points.side == int(Side.LEFT))
-    scan = _Scan(SimpleNamespace(cells=cells), None, flank)
+    forms = FlankForms(cells, np.flatnonzero(flank), PINION.reference_roll)
     rare = 0.5 * (1.96 * 20.0 / tolerance_um) ** 2
-    assert scan.forms_apart(np.where(left, by_turns, 0.0)) == pytest.approx(rare, rel=1e-3)
-    assert scan.forms_apart(np.where(left, 0.5, -0.5) * by_turns) == pytest.approx(rare, rel=1e-3)
-    assert scan.forms_apart(by_turns) == pytest.approx(0.0, abs=1e-9)
-    assert scan.forms_apart(np.where(left, 0.002 * roll, 0.0)) < 0.05 * rare
+    assert forms.forms_apart(np.where(left, by_turns, 0.0)) == pytest.approx(rare, rel=1e-3)
+    assert forms.forms_apart(np.where(left, 0.5, -0.5) * by_turns) == pytest.approx(rare, rel=1e-3)
+    assert forms.forms_apart(by_turns) == pytest.approx(0.0, abs=1e-9)
+    assert forms.forms_apart(np.where(left, 0.002 * roll, 0.0)) < 0.05 * rare
 
 
 @pytest.mark.parametrize(
