@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -192,13 +192,7 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
             f"the flanks of both sides look worn{seen}, and are not used as datum: where the teeth stand rests on tips, roots and fillets"
             + ("" if before else ", and an even loss of both sides could as well be thinner teeth")
         )
-    for sides in loop.undecided:
-        which = " and ".join(str(side) for side in sorted(sides, reverse=True))
-        notes.append(
-            f"the {which} flanks may be worn throughout, or all made so: the scan cannot tell"
-            if sides
-            else "what the worn flanks have in common may be how they were made: the scan cannot tell"
-        )
+    notes += or_worn(loop.undecided)
     if loop.no_datum and not before:
         which = " and ".join(str(side) for side in sorted(loop.no_datum, reverse=True))
         notes.append(
@@ -231,6 +225,15 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
             " what has the shape of sliding does not hang on it"
         )
     return tuple(notes)
+
+
+def or_worn(undecided: Sequence[frozenset[Side]]) -> list[str]:
+    """What else may be worn throughout than is told, in one sentence, and that what is may have been made so."""
+    sides = ["the flanks of both sides" if len(one) == len(Side) else f"the {next(iter(one))} flanks" for one in undecided if one]
+    notes = [f"{' or '.join(sides)} may be worn throughout, or all made so: the scan cannot tell"] if sides else []
+    return notes + [
+        "what the worn flanks have in common may be how they were made: the scan cannot tell" for one in undecided if not one
+    ]
 
 
 def _where_the_mate_ran(measured: MeasuredGear) -> list[str]:

@@ -38,7 +38,7 @@ FLAT = 0.1
 
 
 def alone(context: Context) -> str:
-    """That the design has no mate, and where its flanks are taken not to slide.
+    """That the design has no mate, and where the pitch point is taken to lie.
 
     Where the pair's profile shifts do not sum to zero they slide at the reference circle, and wear of a whole side has another shape than about it.
     """
@@ -46,7 +46,7 @@ def alone(context: Context) -> str:
     if context.pitch is not None:
         still = f"⌀ {2.0 * math.hypot(context.pitch, context.gear.base_radius):.4g} mm, as the wear shows it"
     return (
-        "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out, and flanks are taken not to slide at "
+        "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out, and the pitch point is taken at "
         + still
     )
 

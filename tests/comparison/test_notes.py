@@ -11,10 +11,11 @@ from types import SimpleNamespace
 import numpy as np
 
 import gearwear as gw
-from gearwear.comparison.notes import off_the_drawing, proud_notes, seam_note, take_each_other_back
+from gearwear.comparison.notes import off_the_drawing, or_worn, proud_notes, seam_note, take_each_other_back
 from gearwear.comparison.placed_notes import beside_smoothing, was_smoothed
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
+from gearwear.design.side import Side
 from gearwear.diagnose.effects.tip_diameter import EFFECT as TIP_DIAMETER
 from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.report.words.terminal import lines
@@ -103,6 +104,15 @@ def test_a_tooth_that_may_be_told_wrong_for_where_the_scan_began_is_named():
     thin, thick = (seam_note(DriftSeam(7, by, 9.9, 10.0)) for by in (0.0711, -0.0711))
     assert thin.startswith("tooth 8 is told 71 µm thinner than it is if") and thin.endswith("it has lost less")
     assert thick.startswith("tooth 8 is told 71 µm thicker than it is if") and thick.endswith("it has lost more")
+
+
+def test_other_sides_that_may_be_worn_are_one_sentence():
+    left, both = frozenset({Side.LEFT}), frozenset(Side)
+    assert or_worn((left, both)) == [
+        "the left flanks or the flanks of both sides may be worn throughout, or all made so: the scan cannot tell"
+    ]
+    assert or_worn((frozenset(),)) == ["what the worn flanks have in common may be how they were made: the scan cannot tell"]
+    assert or_worn(()) == []
 
 
 def test_no_note_is_lost_or_said_twice():
