@@ -436,6 +436,7 @@ MUTATIONS = [
         ("comparison/notes.py", "BY_CHANCE = 1e-3", "BY_CHANCE = 0.05", "comparison/test_stated_scanner.py"),
         ("comparison/notes.py", ")[2 : (len(index) + 1) // 2]", ")[1 : (len(index) + 1) // 2]", "comparison/test_stated_scanner.py"),
         ("comparison/notes.py", "*scanner_unstated(measured),", "", "comparison/test_stated_scanner.py"),
+        ("placing/registration.py", "if not fit.step < gear.transverse_module:", "if False:", "placing/test_belonging.py"),
         ("placing/root.py", "SEEN = 0.05", "SEEN = 0.0", "placing/test_root.py"),
         ("comparison/placed_notes.py", "if not any(loop.context.smoothed for loop in loops):", "if False:", "comparison/test_notes.py"),
         ("comparison/placed_notes.py", "FLAT = 0.1", "FLAT = 0.0", "comparison/test_notes.py"),

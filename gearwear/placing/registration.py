@@ -320,6 +320,11 @@ def refit(registration: Registration, cells: Cells, ignore: frozenset[int] = fro
 def _known(pose: Pose, cells: Cells, datum: Datum, free: Bools, fit: CellFit, bands: Bands, fitting: float) -> Registration:
     """A pose with how well it is known, and what a reader must know of it."""
     planar, gear = not free[2], cells.grid.gear
+    if not fit.step < gear.transverse_module:
+        raise InputError(
+            f"the surfaces that were seen do not hold the gear in its place: the last step of the registration was {fit.step:.2g} mm; a scan with the flanks of "
+            "some teeth would be right"
+        )
     observed = np.diag(fit.covariance) > 0.0
     # Whether a doubtful side is worn the scan does not tell, so how far the pose hangs on it is not known either. Asked only of bends that noise
     # could not make, a scan too coarse to show the wear of a side would know its pose better than a fine one.

@@ -3,6 +3,7 @@
 import math
 import re
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from gearwear.api import as_scan
 from gearwear.comparison.measured_gear import register
 from gearwear.design import parse_design
 from gearwear.errors import InputError
-from tests.placing.placing import true_pose
+from gearwear.placing.registration import CellFit, _known
+from tests.placing.placing import designed, true_pose
 from tests.synthetic import PINION, GearNumbers, Recipe, make_scan
 
 FINE, MIDDLE = GearNumbers(54, 0.5, 5.0), GearNumbers(31, 0.8, 5.0)
@@ -102,9 +104,18 @@ def test_another_pressure_angle_is_doubted(numbers):
     assert any("check that the scan is of this gear" in note for note in notes)
 
 
-def test_next_to_no_flanks_are_too_few():
-    """A ring of tips alone lies on the design without showing its teeth."""
+@pytest.mark.parametrize("step", [10.0, 2.6e12, math.nan])
+def test_a_pose_that_moves_by_more_than_a_module_at_last_is_none(step):
+    fit = CellFit(np.zeros(6), np.zeros((6, 6)), 0.0, step)
+    cells = SimpleNamespace(grid=SimpleNamespace(gear=designed()))
+    with pytest.raises(InputError, match="do not hold the gear"):
+        _known(None, cells, None, np.ones(6, dtype=bool), fit, None, 1.0)
+
+
+@pytest.mark.parametrize("above", [44.43, 44.435, 44.44, 44.445])
+def test_next_to_no_flanks_are_too_few(above):
+    """A ring of tips alone lies on the design without showing its teeth; few cells, and a turn that nothing holds, by where it begins."""
     scan = make_scan(Recipe(pose="none", noise_um=4.0, ends="none", jitter=1.0).of_size(8_000), 1)
     radius = np.hypot(*scan.points[:, :2].T)
     with pytest.raises(InputError):
-        laid_on(scan.points[radius > 44.44][:, :2], 12, 6.35)
+        laid_on(scan.points[radius > above][:, :2], 12, 6.35)
