@@ -46,6 +46,7 @@ NUMERICAL = {
     "FORM_GROUP",
     "FRAMES",
     "HIGHEST_ORDER",
+    "HIGHEST_NEIGHBOUR",
     "LEAST",
     "LEAST_ORDER",
     "LEAST_ROWS",

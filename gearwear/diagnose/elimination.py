@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Ints
 from gearwear.design.surface import TIP
+from gearwear.diagnose.among_orders import hidden_among_orders
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, judge, with_levels
@@ -62,6 +63,8 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
     # A view out of scale is a scale and waves of the lowest orders; more waves round the gear belong to no part of it.
     pieces = [pattern.field for pattern in known if pattern.order is not None and pattern.order <= ORDERS_OF_A_PART]
     whole = replace(fit, target=fit.target + np.sum(pieces, axis=0)) if pieces else fit
+    forms = [pattern.field for pattern in known if pattern.order is not None]
+    waves = replace(fit, target=fit.target + np.sum(forms, axis=0)) if forms else fit
     pieces_of: tuple[Pattern, ...] | None = None
     while True:
         specific = any(c.effect.tooth_specific for c in model)
@@ -76,6 +79,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
                 model = cancelled
                 continue
             worst = _most_uneven(whole, problem, model)
+            worst = hidden_among_orders(waves, problem, model) if worst is None else worst
         if worst is None:
             patterns = joined(fit.cells.grid, known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise))
             # What the whole model leaves: an effect that is dropped as a piece of that makes it larger, which speaks against no other.

@@ -60,7 +60,7 @@ class Fit:
     def problem(self, unit: float, context: Context, always: frozenset[str] = frozenset(), known: Gram | None = None) -> Problem:
         """The search problem over all candidates; `known` are the statistics of this fit with fewer columns."""
         columns = self.dictionary.blocks
-        gram = self._gram(columns) if known is None else known.widened(columns, self.target, self.weight)
+        gram = self.statistics(columns) if known is None else known.widened(columns, self.target, self.weight)
         return Problem(self.dictionary, gram, unit, context, always)
 
     def columns(self, model: Model) -> Floats:
@@ -68,7 +68,7 @@ class Fit:
         which = np.concatenate([self.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
         return self.dictionary.take(which)
 
-    def _gram(self, columns: Floats | tuple[CellColumns, ...]) -> Gram:
+    def statistics(self, columns: Floats | tuple[CellColumns, ...]) -> Gram:
         """Statistics of some columns, all cells together."""
         return Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
 
@@ -79,7 +79,7 @@ class Fit:
     def residual(self, model: Model) -> Floats:
         """Target minus the refitted model, mm, (m,)."""
         columns = self.columns(model)
-        gram = self._gram(columns)
+        gram = self.statistics(columns)
         return np.asarray(self.target - columns @ gram.solve(np.arange(columns.shape[1]))[0], dtype=np.float64)
 
     def pose_residual(self) -> Floats:
@@ -144,7 +144,7 @@ class Fit:
         """(m, k) what effects too small to be found leave in each cell beside the model, mm: one of them is there, any of them alike, so
         the columns' outer products add up to the covariance."""
         columns = self.columns(model)
-        gram = self._gram(columns)
+        gram = self.statistics(columns)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         fields = [own - columns @ pull for own, pull in self._too_small(model, columns, inverse, noise)]
         return np.column_stack(fields) / np.sqrt(len(fields)) if fields else np.zeros((len(self.target), 0))
@@ -159,7 +159,7 @@ class Fit:
         evenly shared ``Σ w h²`` would be (Satterthwaite 1946). An effect on a few teeth is told by few.
         """
         columns = self.columns(model)
-        gram = self._gram(columns)
+        gram = self.statistics(columns)
         amplitudes, inverse = gram.solve(np.arange(columns.shape[1]))
         weight, left = self.weight, self.target - columns @ amplitudes
         teeth = self.use & (self.cells.points.surface <= TIP)
@@ -176,7 +176,7 @@ class Fit:
     def level_std(self, model: Model, hidden: Floats) -> tuple[float, float]:
         """Standard deviation of the model's mean over all left and over all right flanks, mm; `hidden` as that function gives it."""
         columns = self.columns(model)
-        gram = self._gram(columns)
+        gram = self.statistics(columns)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         spread = sandwich(columns, self.use, self.covariance, inverse)
         points = self.cells.points
@@ -225,7 +225,7 @@ class Fit:
         of_sides = flank[:, None] & (points.side[:, None] == np.array([int(side) for side in Side]))
         levels = (split[:, :, None] * of_sides[:, None]).reshape(len(field), -1)
         every = np.hstack([columns, levels, split * field[:, None]])
-        gram = self._gram(every)
+        gram = self.statistics(every)
         own, of_half, apart = np.split(np.arange(every.shape[1]), [columns.shape[1], columns.shape[1] + levels.shape[1]])
         for at, beside in zip(apart, of_half.reshape(len(halves), -1), strict=True):
             alone = float(gram.information[0, at, at])
@@ -264,7 +264,7 @@ class Fit:
         own = self.columns(model)
         extra = [shape_columns(c, amplitudes[part], self.cells, context) for c, part in zip(model, parts, strict=True)]
         columns = np.hstack([own, *extra])
-        gram = self._gram(columns)
+        gram = self.statistics(columns)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         spread = sandwich(columns, self.use, self.covariance, inverse)
         pulls = [pull for _, pull in self._too_small(model, columns, inverse, noise)]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import chdtri
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Complexes, Floats
 from gearwear.diagnose.pattern import order_share
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import CellGrid
@@ -34,18 +34,32 @@ def neighbouring_waves(grid: CellGrid, residual: Floats, use: Bools, order: int)
 
     Nothing where a tooth was not seen, for of a part of the gear no order is known by itself, or where there is one neighbour alone.
     """
-    teeth = grid.gear.teeth
-    sides = np.where(grid.sides(use), grid.sides(residual), 0.0)
-    orders = [k for k in range(max(order - NEIGHBOURS, LEAST_ORDER), order + NEIGHBOURS + 1) if k != order and 2 * k < teeth]
-    if len(orders) < 2 or not grid.sides(use).any(axis=(1, 2, 3)).all():
+    orders = [
+        k for k in range(max(order - NEIGHBOURS, LEAST_ORDER), order + NEIGHBOURS + 1) if k != order and 2 * k < grid.gear.teeth
+    ]
+    if len(orders) < 2 or not all_teeth_seen(grid, use):
         return np.zeros((len(residual), 0))
+    seen = np.where(use, residual, 0.0)
+    return np.hstack([turned_to(grid, height_of(grid, seen, k), order) for k in orders])
+
+
+def all_teeth_seen(grid: CellGrid, use: Bools) -> bool:
+    """Whether cells in use (m,) lie on the sides of every tooth: of a part of the gear no order is known by itself."""
+    return bool(grid.sides(use).any(axis=(1, 2, 3)).all())
+
+
+def height_of(grid: CellGrid, field: Floats, order: int) -> Complexes:
+    """The wave of an order round the gear that a field (m,) has in each place of a tooth, complex, mm: its shape without the axis of the teeth."""
+    teeth = grid.gear.teeth
     angle = 2.0 * np.pi * np.arange(teeth) / teeth
-    waves = []
-    for k in orders:
-        height = 2.0 / teeth * np.tensordot(np.exp(-1j * k * angle), sides, axes=(0, 0))
-        turned = np.exp(1j * order * angle)[:, None, None, None] * height
-        waves += [grid.on_cells(np.ascontiguousarray(part)) for part in (turned.real, -turned.imag)]
-    return np.column_stack(waves)
+    return np.asarray(2.0 / teeth * np.tensordot(np.exp(-1j * order * angle), grid.sides(field), axes=(0, 0)))
+
+
+def turned_to(grid: CellGrid, height: Complexes, order: int) -> Floats:
+    """A shape that goes round the gear with some order, as it is and a quarter further: (m, 2) mm."""
+    teeth = grid.gear.teeth
+    turned = np.exp(2j * np.pi * order * np.arange(teeth) / teeth)[:, None, None, None] * height
+    return np.column_stack([grid.on_cells(np.ascontiguousarray(part)) for part in (turned.real, -turned.imag)])
 
 
 def beyond_texture(pulls: Floats, spread: Floats) -> Floats:

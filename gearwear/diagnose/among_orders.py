@@ -1,0 +1,73 @@
+"""Whether an effect of one order round the gear stands out of its neighbours, or is the part of a broader form that falls on that order.
+
+A blank of three lobes, views that lie apart and a range that drifts make waves of many orders. The catalogue has a name for some orders alone, an ovality of the
+scanner's scale or a wobble, and would give it to what such a form has of them.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.special import chdtri, fdtrc
+
+from gearwear.arrays import Floats
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.fit import Fit, Model
+from gearwear.diagnose.own_waves import LEAST_ORDER, all_teeth_seen, height_of, order_of, turned_to
+from gearwear.diagnose.rules import rules
+from gearwear.diagnose.search import Problem
+
+HIGHEST_NEIGHBOUR = 6
+"""Order up to which a form is looked for: two above the highest that an effect is looked at for (`own_waves.HIGHEST_ORDER`)."""
+
+
+def hidden_among_orders(fit: Fit, problem: Problem, model: Model) -> int | None:
+    """The effect of one order that stands out least; None where all do.
+
+    Parameters
+    ----------
+    fit : Fit
+        Its target holds the patterns found before, which are waves of such orders.
+    problem, model : Problem, Model
+        The effects to look at, all together.
+
+    Notes
+    -----
+    What an effect of q columns explains beside the others, g, is put against what its own shape explains at the m / 2 other orders, h, each a wave
+    and the same a quarter further round: F = (g / q) / (h / m), by Fisher's distribution, corrected for all candidates. Where h is no more than chance,
+    its m waves being as independent as the cells' covariance has it, there is no form to be a part of.
+    """
+    if not all_teeth_seen(fit.cells.grid, fit.use):
+        return None
+    amplitudes, _ = problem.gram.solve(problem.columns(model))
+    columns, parts = fit.columns(model), fit.parts(model)
+    least = (rules().significance_of_names, -1)
+    for i, (candidate, part) in enumerate(zip(model, parts, strict=True)):
+        if candidate.effect.tooth_specific or candidate.effect.kind in (Kind.WEAR, Kind.FORM):
+            continue
+        field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], 0.0)
+        if order := order_of(fit.cells.grid, field):
+            p_value = len(problem.dictionary.candidates) * _by_chance(fit, problem, columns, part, field, order)
+            least = max(least, (p_value, i))
+    return least[1] if least[1] >= 0 else None
+
+
+def _by_chance(fit: Fit, problem: Problem, columns: Floats, part: slice, field: Floats, order: int) -> float:
+    """Probability that an effect of an order with its neighbours' power explains as much as one does."""
+    grid = fit.cells.grid
+    orders = [k for k in range(LEAST_ORDER, HIGHEST_NEIGHBOUR + 1) if k != order and 2 * k < grid.gear.teeth]
+    if not orders:
+        return 0.0
+    height = height_of(grid, field, order)
+    waves = [turned_to(grid, height, k) for k in orders]
+    gram, every = fit.statistics(np.hstack([columns, *waves])), np.arange(columns.shape[1])
+    own = every[part]
+    (gain,) = gram.gains(np.setdiff1d(every, own), [own])
+    places = columns.shape[1] + np.arange(2 * len(orders)).reshape(-1, 2)
+    beside = float(np.sum(gram.gains(every, list(places)))) / problem.unit
+    count = 2 * len(orders)
+    if beside < float(chdtri(count, rules().significance)):
+        return 0.0
+    ratio = gain / problem.unit / len(own) / (beside / count)
+    return float(fdtrc(len(own), count, ratio)) if math.isfinite(ratio) else 1.0
