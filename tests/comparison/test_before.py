@@ -46,6 +46,7 @@ def test_an_even_loss_of_a_side_is_wear_and_no_thinner_tooth(tmp_path, before, w
     assert not any("thinner teeth" in note for note in results.notes)
 
 
+@pytest.mark.long
 def test_scans_the_wrong_way_round_are_told(tmp_path, before):
     """All left flanks are worn, by the sliding."""
     worn, scan = scan_file(tmp_path, "worn", replace(NEW, wear=(SlidingWear(30.0, 1),)), 6)

@@ -66,6 +66,7 @@ def ends_bevelled(folder, size: float, *wear: SlidingWear):
     return folder / "ends.xyz", scan
 
 
+@pytest.mark.long
 def test_bevelled_ends_are_no_wear_and_no_effect_and_take_nothing_off_the_thinnest(folder):
     file, _ = ends_bevelled(folder, 0.5)
     results = compare(read_design(folder / "design.toml"), [file], inspection=False)

@@ -47,6 +47,7 @@ def test_sides_without_which_nothing_was_seen_are_refused():
         gw.find_effects(measured, worn=frozenset(Side))
 
 
+@pytest.mark.long
 def test_with_a_scan_before_wear_it_is_the_difference():
     """Of both sides, which slid: without them the worn scan has nothing that holds it, and stands as it does."""
     worn, truth = flanks(*Side, wear=(*SLID, SlidingWear(60.0, -1)))

@@ -70,6 +70,7 @@ def test_the_interval_holds_the_tooth_that_the_seam_goes_through(closure):
     assert np.array_equal(told_so.arc, either.arc, equal_nan=True) and told_so.teeth() == either.teeth()
 
 
+@pytest.mark.long
 def test_a_seam_in_a_gap_makes_no_tooth_thinner():
     gear, told_so, either = told(TOOTH + 0.5)
     assert either is told_so

@@ -40,6 +40,7 @@ def test_misalignment_is_named_with_its_size_and_the_end_that_is_open():
     assert found.alternatives[:1] == ("helix_slope",)  # it can never be told from that of either gear as made
 
 
+@pytest.mark.long
 def test_the_error_falls_on_what_the_fit_never_saw():
     found = askew(30.0)
     for before, after in zip(_held_out(found, "before"), _held_out(found, "after"), strict=True):
