@@ -217,7 +217,7 @@ def flanks(wear: Json, truth: Json, placement: Placement) -> Json:
 def thinnest(teeth: list[Json], told: Json | None, truth: Json, placement: Placement) -> Json | None:
     """Thinnest tooth among those that have a number and are whole; and how far the teeth's means are off, µm.
 
-    Where the report has an answer of its own to that, `told`, it is judged by it, unless the tooth it names is not whole.
+    Where the report has an answer of its own to that, `told`, it is judged by it, unless the tooth it names is not whole; else by the tooth's own least.
     """
     z = truth["gear"]["teeth"]
     rows = {row["tooth"] - 1: row for row in teeth if row.get("min_mm") is not None}
@@ -231,10 +231,10 @@ def thinnest(teeth: list[Json], told: Json | None, truth: Json, placement: Place
         return None
     row = min((p[0] for p in pairs), key=lambda r: r["min_mm"])
     if told is not None and any(p[0]["tooth"] == told["tooth"] for p in pairs):
-        row = {"min_mm": told["value_mm"]} | told
+        row = {"min_mm": told["value_mm"], "min_std_mm": told["std_mm"]} | told
     true = min(p[1] for p in pairs)
     each = [interval({"value": r["min_mm"], "std": r.get("min_std_mm")}, least) for r, least, _ in pairs]
-    std = row.get("std_mm")
+    std = row.get("min_std_mm")
     got = {"value": row["min_mm"], "std": std, "low": row.get("low_mm"), "high": row.get("high_mm")}
     errors = [1e3 * (r["mean_mm"] - mean) for r, _, mean in pairs if r.get("mean_mm") is not None]
     return interval(got, true) | {
