@@ -383,6 +383,8 @@ MUTATIONS = [
         ("meshing/slices.py", "alone.all() or not alone.any()", "True", "meshing/test_unequal_faces.py"),
         ("meshing/slices.py", "0.5 * (mate.face_width - gear.face_width)", "0.0", "meshing/test_unequal_faces.py"),
         ("meshing/backlash.py", "circumferential / (2.0 * math.tan", "circumferential / (1.0 * math.tan", "meshing/test_backlash.py"),
+        ("meshing/backlash.py", "NO_OVERLAP = 1e-7", "NO_OVERLAP = 1e-3", "meshing/test_contact.py"),
+        ("meshing/backlash.py", "at_most(centre_distance + closing)", "at_most(centre_distance - closing)", "meshing/test_contact.py"),
         ("meshing/backlash.py", "thickness_loss * cos_reference", "thickness_loss", "meshing/test_backlash.py"),
         ("meshing/clearance.py", "ROUNDING = 1e-9", "ROUNDING = 1e-2", "meshing/test_clearance.py"),
         ("meshing/shafts.py", "wanted = max(present, 0.0)", "wanted = present", "meshing/test_shafts.py"),

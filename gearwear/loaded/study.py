@@ -22,6 +22,7 @@ from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, co
 from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import ToothCompliance, tooth_compliance
+from gearwear.meshing.backlash import normal_backlash, overlap_words
 from gearwear.meshing.passes import CYCLES, Cycle
 from gearwear.meshing.slices import common_width, uneven_across_face
 from gearwear.threads import on_one_thread
@@ -238,7 +239,7 @@ def study_load(
         present=present,
         design_spread=LoadedSpread(_both(_off(designed, other_designs), by_slices), _off(designed, ())),
         spread=LoadedSpread(_both(_off(present, others), by_slices), _off(present, by_flanks)),
-        notes=_notes(teeth, present),
+        notes=_notes(teeth, present, centre),
     )
 
 
@@ -254,8 +255,10 @@ def _both(one: dict[str, float], other: dict[str, float]) -> dict[str, float]:
     return {quantity: math.hypot(one[quantity], other[quantity]) for quantity in QUANTITIES}
 
 
-def _notes(teeth: tuple[ToothCompliance, ToothCompliance], present: LoadedContact) -> tuple[str, ...]:
-    notes = []
+def _notes(teeth: tuple[ToothCompliance, ToothCompliance], present: LoadedContact, centre: float) -> tuple[str, ...]:
+    gears = teeth[0].gear, teeth[1].gear
+    tight = overlap_words(*gears, centre, normal_backlash(*gears, centre))
+    notes = [f"as designed {tight}"] if tight else []
     for body in teeth:
         if body.gear.spec.bore_diameter == 0.0:
             notes.append(

@@ -20,12 +20,14 @@ from gearwear.design.gear import Gear
 from gearwear.design.given import check_choice, check_number
 from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.pair import base_backlash, base_radius_sum, opposite_hands, same_base_pitch, tight_involute
-from gearwear.design.quantity import apart, as_given, at_least
+from gearwear.design.quantity import apart, as_given, at_least, at_most, not_zero
 from gearwear.design.rack import bisect
 from gearwear.errors import InputError
 
 BacklashKind = Literal["reference", "operating", "normal"]
 """Where a backlash is measured: transverse arc on the reference or the operating circles, or normal to the flanks."""
+NO_OVERLAP = 1e-7
+"""mm; a backlash below 0 by less is that of the search for its least value, and of the computer's rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,6 +172,29 @@ def backlash_from_normal(pinion: Gear, gear: Gear, centre_distance: float, norma
         angular_pinion=transverse / pinion.base_radius,
         angular_gear=transverse / gear.base_radius,
         axial=circumferential / (pitch_radius * abs(pinion.twist)) if pinion.twist != 0.0 else None,
+    )
+
+
+def overlap_words(pinion: Gear, gear: Gear, centre_distance: float, normal: float) -> str:
+    """What a normal backlash (mm) below 0 means, and the centre distance that would be right, as a clause; "" where there is room.
+
+    >>> from gearwear.design import GearSpec
+    >>> pinion, gear = (Gear.from_spec(GearSpec(part, z, 6.35, 15.0)) for part, z in (("pinion", 12), ("gear", 24)))
+    >>> overlap_words(pinion, gear, 114.2, normal_backlash(pinion, gear, 114.2))
+    'the teeth overlap by 0.0682 mm (normal backlash) at a centre distance of 114.2 mm, where rigid gears jam: at least 114.3000 mm would be right'
+    """
+    if normal >= -NO_OVERLAP:
+        return ""
+    closing = backlash_from_normal(pinion, gear, centre_distance, normal).radial_closing
+    if closing is None:
+        right = "thinner teeth would be"
+    elif gear.spec.internal:
+        right = f"at most {at_most(centre_distance + closing)} mm would be"
+    else:
+        right = f"at least {at_least(centre_distance - closing)} mm would be"
+    return (
+        f"the teeth overlap by {not_zero(-normal)} mm (normal backlash) at a centre distance of {as_given(centre_distance)} mm, where rigid gears"
+        f" jam: {right} right"
     )
 
 

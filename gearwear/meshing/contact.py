@@ -21,7 +21,7 @@ from gearwear.design.quantity import as_given, at_least, at_most, shown
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError, check_kind
-from gearwear.meshing.backlash import check_mesh, transverse_backlash
+from gearwear.meshing.backlash import check_mesh, overlap_words, transverse_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
 from gearwear.meshing.passes import CYCLES, Cycle, Passes, Positions, pitches
 from gearwear.meshing.slices import Slices
@@ -86,6 +86,7 @@ def mesh_contact(
     Returns
     -------
     ContactResult
+        At a centre distance at which the teeth overlap its backlash is negative, and `ContactResult.doubt` says so.
 
     Raises
     ------
@@ -164,6 +165,7 @@ def mesh_contact(
             )
             for v in range(len(others))
         ),
+        doubt=overlap_words(gear, mate, centre_distance, -lean * tightest.value),
     )
 
 

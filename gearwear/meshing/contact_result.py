@@ -12,6 +12,7 @@ from gearwear.arrays import Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.involute import roll_length
+from gearwear.design.quantity import sentence
 from gearwear.meshing.path import PathOfContact
 
 CELLS = 24
@@ -136,6 +137,8 @@ class ContactResult(Card):
         Rotation of the driver at the extremes, rising, and both there.
     variants : tuple of ContactVariant
         Those asked for.
+    doubt : str
+        That the teeth overlap somewhere, where no rigid gears turn, and the centre distance that would be right, a clause; "" where they have room.
     """
 
     rotation: Floats
@@ -162,6 +165,7 @@ class ContactResult(Card):
     peak_transmission_error: Floats
     peak_backlash: Floats
     variants: tuple[ContactVariant, ...] = ()
+    doubt: str = ""
 
     def headline(self) -> str:
         return f"{self.driver.teeth} : {self.driven.teeth} teeth, transmission error {self.peak_to_peak_um:.2f} µm peak to peak"
@@ -175,6 +179,7 @@ class ContactResult(Card):
             ("greatest lag", f"{-1e3 * lag.value:z.2f} µm on the line of action, at {math.degrees(lag.rotation):.1f}°"),
             ("contact ratio", ratios),
             ("positions", f"{len(self.rotation):,} of the driver"),
+            *([("doubt", sentence(self.doubt))] if self.doubt else []),
         ]
 
     @property

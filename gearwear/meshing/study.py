@@ -17,7 +17,7 @@ from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.quantity import SPACE, not_zero, number, sentence
 from gearwear.design.side import Side
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import Backlash, backlash_from_normal, zero_backlash_centre_distance
+from gearwear.meshing.backlash import Backlash, backlash_from_normal, overlap_words, zero_backlash_centre_distance
 from gearwear.meshing.clearance import bottoming_centre_distance, interference_free_centre_distance
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
@@ -364,6 +364,8 @@ def study_meshing(
     cycle = cycle or ("driven" if longer else "revolution")
     first = 0 if mate_tooth is None else mate_tooth - 1
     contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle, first)
+    if contact.doubt and f"as designed {contact.doubt}" not in notes:
+        notes.insert(0, f"as they are {contact.doubt}")
     play = contact.backlash_min.value, contact.backlash_max.value
     gone = sum(worn_gear.loss for worn_gear, _ in worn)
     shafts = take_up(pinion, gear, centre, play, gone) if gone > 0.0 and not gear.spec.internal else None
@@ -432,9 +434,9 @@ def transmission_error_as_drawn(pinion: Gear, gear: Gear, centre_distance: float
 
 def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
     """What a reader must know of the design at this centre distance."""
-    notes = [note for gear in design.gears.values() for note in gear.notes]
-    if exact.backlash.normal < -1e-9:
-        notes.append(f"as designed the teeth would overlap by {not_zero(-exact.backlash.normal)} mm at this centre distance")
+    tight = overlap_words(design.gears["pinion"], design.gears["gear"], exact.centre_distance, exact.backlash.normal)
+    notes = [f"as designed {tight}"] if tight else []
+    notes += [note for gear in design.gears.values() for note in gear.notes]
     if exact.path.total_contact_ratio < 1.0:
         notes.append(f"as designed the contact ratio is {exact.path.total_contact_ratio:.3f}: the drive is not continuous")
     for part, other, tip in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):

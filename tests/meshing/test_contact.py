@@ -1,5 +1,7 @@
 """Rigid contact against the reference numbers, closed forms and invariances."""
 
+import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +12,7 @@ from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import normal_backlash
+from gearwear.meshing.backlash import centre_distance_for_backlash, normal_backlash
 from gearwear.meshing.contact import _contact_ratio, mesh_contact
 from gearwear.meshing.path import path_of_contact
 from tests.meshing.worn import design, roll_of, rough, sliding_like, wear
@@ -357,6 +359,36 @@ def test_contact_ratio_of_perfect_flanks_is_that_of_the_path(pinion, wheel, own,
     assert result.contact_ratio_on(path) == path.contact_ratio
     worn = mesh_contact(wear(own, sliding_like, range(12)), mate, C, positions_per_pitch=34, cycle="pitch")
     assert worn.contact_ratio_on(path) == worn.contact_ratio[0][1] < path.contact_ratio
+
+
+def named_distance(doubt):
+    return float(re.search(r"at (?:least|most) ([0-9.]+) mm would be right", doubt)[1])
+
+
+@pytest.mark.parametrize("worn", [0.0, 0.002])
+def test_teeth_that_overlap_are_told_with_the_distance_at_which_they_do_not(own, mate, worn):
+    """The overlap told is the design's negative backlash less the wear, and there is none at the distance told, however little closer there is."""
+    driver, closer = wear(own, worn, range(12)), C - 0.01
+    found = mesh_contact(driver, mate, closer, cycle="pitch")
+    least = normal_backlash(own.gear, mate.gear, closer) + worn
+    assert f"the teeth overlap by {-least:.4f} mm (normal backlash) at a centre distance of {closer:g} mm" in found.doubt
+    assert ("doubt", found.doubt[0].upper() + found.doubt[1:] + ".") in found.rows()
+    room = named_distance(found.doubt)
+    assert room == pytest.approx(
+        centre_distance_for_backlash(own.gear, mate.gear, 0.0, "normal", worn / math.cos(own.gear.transverse_pressure_angle)),
+        abs=1e-4,
+    )
+    assert mesh_contact(driver, mate, room, cycle="pitch").doubt == ""
+    assert mesh_contact(driver, mate, room - 2e-4, cycle="pitch").doubt != ""
+
+
+def test_a_ring_without_room_is_told_to_come_closer():
+    """Inside a ring backlash falls as the shafts part."""
+    parts = GearSpec("pinion", 20, 3.0, 20.0, addendum=0.8), GearSpec("gear", 60, 3.0, 20.0, addendum=0.8, internal=True)
+    pinion, ring = (nominal_profiles(Gear.from_spec(spec)) for spec in parts)
+    doubt = mesh_contact(pinion, ring, 60.02, cycle="pitch").doubt
+    assert "at most 60.0000 mm would be right" in doubt
+    assert mesh_contact(pinion, ring, named_distance(doubt), cycle="pitch").doubt == ""
 
 
 def test_bad_input_is_named(own, mate, wheel):

@@ -61,6 +61,24 @@ def test_what_cannot_be_is_refused_by_its_name(call, named):
     assert named in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("loss", "said"), [(None, ["as designed"]), (0.03, ["as they are", "as designed"]), (0.1, ["as designed"])]
+)
+def test_a_pair_too_close_is_told_so_as_designed_and_as_it_is(loss, said):
+    """0.1 mm closer than without backlash takes 0.068 mm of it: 0.03 mm of wear leave an overlap, 0.1 mm leave none."""
+    notes = [note for note in gw.study_meshing(DESIGN, loss=loss, centre_distance=114.2).notes if "the teeth overlap by" in note]
+    assert [note.split(" the teeth")[0] for note in notes] == said
+    assert "at least 114.3000 mm would be right" in notes[-1]
+    assert not any("overlap" in note for note in gw.study_meshing(DESIGN, loss=loss).notes)
+
+
+def test_a_pair_too_close_is_told_so_under_load(monkeypatch):
+    monkeypatch.setattr("gearwear.loaded.study.SLICES", 1)
+    load = gw.LoadSpec(load_per_width=9.0)
+    close, apart = (gw.study_load(DESIGN, load=load, centre_distance=a, cycle="pitch").notes for a in (114.2, 114.3))
+    assert any("at least 114.3000 mm would be right" in note for note in close) and not any("overlap" in note for note in apart)
+
+
 def test_numbers_of_numpy_are_numbers():
     found = gw.study_meshing(DESIGN, loss=np.float64(0.05), centre_distance=np.float32(114.5))
     assert found.worn.loss > 0.0 and gw.LoadSpec(torque=np.float64(5e3)).torque == 5e3
