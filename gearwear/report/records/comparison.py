@@ -437,6 +437,7 @@ def _thinnest(results: Results) -> Json | None:
         "low_mm": least.low,
         "high_mm": least.high,
         "at_z_mm": least.at_z,
+        **({} if least.wider is None else {"range_from": str(least.wider)}),
     }
 
 
