@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import math
 import re
 import subprocess
 import sys
@@ -22,6 +23,7 @@ import gearwear as gw
 from gearwear.comparison.closing import measure
 from gearwear.design.card import Card, few, measured
 from gearwear.meshing.study import flanks_as_drawn
+from gearwear.report.figures.colours import ColourScale
 from gearwear.scan.reading import read_scan as read_files
 from tests.report.fake import real_results, real_scan
 
@@ -338,6 +340,14 @@ class TestStages:
         (lambda axis: gw.figures.thickness_per_tooth(axis, real_results()), "thickness of type Results: results.wear.thickness"),
         (lambda axis: gw.figures.transmission_error(axis, real_results().pair), "curves of type PairResult: gw.report_arrays"),
         (lambda axis: gw.figures.traces(axis, np.ones(4), np.ones((12, 5)), 20.0, "k"), "deviation_um of shape .* n = 4"),
+        (lambda axis: gw.figures.traces(axis, np.ones(5), np.ones((12, 5)), 0.0, "k"), "um_per_tooth = 0.0: a number above 0"),
+        (lambda axis: gw.figures.traces(axis, np.ones(5), np.ones((12, 5)), 20.0, "none such"), "colour = 'none such': one of matplotlib"),
+        (lambda axis: gw.figures.traces(axis, np.ones(5), np.ones((12, 5)), 20.0, None), "colour = None: one of matplotlib"),
+        (lambda axis: gw.figures.colour_bar(axis, ColourScale(40.0), high=math.nan), "high = nan: a number from 0, of depths, to 1"),
+        (lambda axis: gw.figures.colour_bar(axis, ColourScale(40.0), high=-1.0), "high = -1.0: a number from 0"),
+        (lambda axis: gw.figures.colour_bar(axis, ColourScale(math.inf)), "limit_um = inf: a number above 0, in µm,"),
+        (lambda axis: gw.figures.colour_bar(axis, ColourScale(40.0, 41.0)), "linear_um = 41.0: a number above 0 and at most limit_um"),
+        (lambda axis: gw.figures.tooth_section(axis, np.ones((5, 2)), np.ones((5, 2)), math.nan), "reference_radius_mm = nan: a number"),
         (lambda axis: gw.figures.pair_in_mesh(axis, *bundled().gears.values(), 114.3), "exact of type float: what gw.exact_meshing"),
         (lambda axis: gw.figures.specific_sliding(axis, 3, None), "slid of type int: study.sliding"),
         (lambda axis: gw.figures.worn_profile(axis, real_results()), "law of type Results: results.pair.law"),

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 
+from gearwear.design.given import check_number
 from gearwear.design.quantity import as_given
 from gearwear.errors import InputError
 
 
 def check_between(section: str, label: str, value: float, low: float, high: float, unit: str) -> None:
     """Refuse a number outside its range, or none at all, by section and key of the design; radians for degrees are pointed out."""
+    check_number(f"[{section}] {label}", value, unit)
     if not low <= value <= high:  # refuses NaN too
         degrees = math.degrees(value)
         radians = (

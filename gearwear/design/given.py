@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,6 +39,21 @@ def check_whole(name: str, given: object, least: int | None = None) -> None:
         raise InputError(f"{name} = {shown(given)}: a whole number{bound} would be right")
 
 
+def is_number(given: object) -> TypeGuard[float]:
+    """Whether it is a real number that a float holds; True and False are none, a text or an array with one neither.
+
+    >>> is_number(np.float32(2.5)), is_number(True), is_number("2.5"), is_number(10**400)
+    (True, False, False, False)
+    """
+    if not isinstance(given, Real) or isinstance(given, bool):
+        return False
+    try:
+        float(given)
+    except OverflowError:
+        return False
+    return True
+
+
 def check_number(name: str, given: object, unit: str) -> None:
     """Refuse what is no number, such as its text; how great it may be is for others to say.
 
@@ -45,8 +61,34 @@ def check_number(name: str, given: object, unit: str) -> None:
     Traceback (most recent call last):
     gearwear.errors.InputError: centre_distance = '114.3': a number, in mm, would be right
     """
-    if not isinstance(given, Real) or isinstance(given, bool):
+    if not is_number(given):
         raise InputError(f"{name} = {shown(given)}: a number{f', in {unit},' if unit else ''} would be right")
+
+
+def check_within(name: str, given: object, low: float, high: float, right: str) -> None:
+    """Refuse what is no finite number from low to high; nan is none.
+
+    >>> check_within("um_per_tooth", 0.0, math.ulp(0.0), math.inf, "a number above 0")
+    Traceback (most recent call last):
+    gearwear.errors.InputError: um_per_tooth = 0.0: a number above 0 would be right
+    """
+    if not (is_number(given) and low <= given <= high and abs(given) < math.inf):
+        raise InputError(f"{name} = {shown(given)}: {right} would be right")
+
+
+def two_numbers(name: str, given: object, right: str) -> tuple[float, float]:
+    """Two numbers as they were given, in their order; refused where these are none.
+
+    >>> two_numbers("profile_band", 12.0, "two lengths in mm")
+    Traceback (most recent call last):
+    gearwear.errors.InputError: profile_band = 12.0: two lengths in mm would be right
+    """
+    first = last = None
+    if isinstance(given, Iterable) and getattr(given, "ndim", 1) == 1 and len(both := list(given)) == 2:
+        first, last = both
+    if not (is_number(first) and is_number(last)):
+        raise InputError(f"{name} = {shown(given)}: {right} would be right")
+    return first, last
 
 
 def check_several(name: str, given: object, what: str) -> list[Any]:

@@ -20,6 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearwear.arrays import Floats
+from gearwear.design.bounds import check_between
+from gearwear.design.given import check_choice, check_number
 from gearwear.design.quantity import as_given, at_least, at_most
 from gearwear.design.side import Side
 from gearwear.errors import InputError
@@ -97,13 +99,13 @@ class FlankModification:
             Names the value and what would be right.
         """
         for name in AMOUNTS:
-            value = getattr(self, name)
             least = 0.0 if name.endswith("relief") else -MOST_AMOUNT
-            if not least <= value <= MOST_AMOUNT:
-                raise InputError(f"[{section}] {name} = {value:g} mm: must lie from {least:g} to {MOST_AMOUNT:g}")
+            check_between(section, name, getattr(self, name), least, MOST_AMOUNT, "mm")
         for name in WORDS:
-            if getattr(self, name) not in FORMS:
-                raise InputError(f"[{section}] {name} = {getattr(self, name)[:40]!r}: must be one of {', '.join(FORMS)}")
+            check_choice(f"[{section}] {name}", getattr(self, name), FORMS)
+        for name in (*LENGTHS, "tip_relief_start", "root_relief_start"):
+            if getattr(self, name) is not None or name == "end_relief_length":
+                check_number(f"[{section}] {name}", getattr(self, name), "mm")
         for end in ("tip", "root"):
             relief, start, length = (getattr(self, f"{end}_relief{part}") for part in ("", "_start", "_length"))
             if start is not None and length is not None:

@@ -13,12 +13,15 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from numbers import Integral
 
+import numpy as np
+
 from gearwear.design.bounds import check_between
 from gearwear.design.drawn_gauge import DrawnGauge
+from gearwear.design.given import check_choice, check_number, check_several, two_numbers
 from gearwear.design.modification import AS_GENERATED, FlankModification
 from gearwear.design.quantity import shown
 from gearwear.design.tolerance import GearTolerance
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 
 MOST_COMPUTED = 10_000
 """Teeth of a gear that is computed with and not built: as good as a rack."""
@@ -150,6 +153,7 @@ class GearSpec:
     gauge: DrawnGauge | None = None
 
     def __post_init__(self) -> None:
+        check_kind(self.name, str, "name", '"pinion" or "gear"')
         try:
             teeth = 0 if isinstance(self.teeth, bool) else operator.index(self.teeth)  # integers of numpy too
         except TypeError:
@@ -159,6 +163,7 @@ class GearSpec:
                 f"[{self.name}] teeth = {shown(self.teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_COMPUTED}"
             )
         object.__setattr__(self, "teeth", teeth)
+        self._check_kinds()
         check_module(self.name, self.normal_module)
         check_between(self.name, "face_width", self.face_width, 1e-3, 1e5, "mm")
         check_between(self.name, "pressure_angle", math.degrees(self.normal_pressure_angle), 5.0, 45.0, "degrees")
@@ -191,6 +196,30 @@ class GearSpec:
         if not self.gap < self.face_width:
             raise InputError(f"[{self.name}] gap = {self.gap:g} mm: must be below the face width, {self.face_width:g} mm")
         self._check_ring()
+
+    def _check_kinds(self) -> None:
+        """What is compared with no limit, or in other units than it has here."""
+        for label in ("normal_pressure_angle", "helix_angle"):
+            check_number(f"[{self.name}] {label}", getattr(self, label), "rad")
+        for label, unit in (("protuberance_angle", "rad"), *((key, "") for key in RING_KEYS)):
+            if getattr(self, label) is not None:
+                check_number(f"[{self.name}] {label}", getattr(self, label), unit)
+        for label, kind, right in (
+            ("internal", bool | np.bool_, "True or False"),
+            ("thinning_measured", bool | np.bool_, "True or False"),
+            ("tolerance", GearTolerance, "a GearTolerance"),
+            ("left", FlankModification, "a FlankModification"),
+            ("right", FlankModification, "a FlankModification"),
+            ("gauge", DrawnGauge | None, "a DrawnGauge or None"),
+        ):
+            check_kind(getattr(self, label), kind, f"[{self.name}] {label}", right)
+        for label, pairs in (("modified_between", (self.modified_between,)), ("ends_seen", self.ends_seen)):
+            for pair in (
+                ()
+                if getattr(self, label) is None
+                else check_several(f"[{self.name}] {label}", pairs, "two pairs of lengths in mm")
+            ):
+                two_numbers(f"[{self.name}] {label}", pair, "two lengths in mm")
 
     def _check_protuberance(self) -> None:
         """The tool of a root that the finished flank cuts."""
@@ -296,6 +325,8 @@ class PairSpec:
     def __post_init__(self) -> None:
         if self.centre_distance is not None:
             check_between("pair", "centre_distance", self.centre_distance, 1e-3, 1e8, "mm")
+        check_choice("[pair] baseline", self.baseline, Baseline)
+        object.__setattr__(self, "baseline", Baseline(self.baseline))  # the same word as a plain string is none
         check_between("pair", "backlash_allowance", self.backlash_allowance, 0.0, 1e3, "mm")
 
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearwear.design.bounds import check_between
+from gearwear.design.given import check_whole
 from gearwear.errors import InputError
 
 GRADES = {9: 40.0, 11: 100.0, 12: 160.0, 13: 250.0}
@@ -42,14 +44,16 @@ class GearTolerance:
     flank_class: int | None = None
 
     def __post_init__(self) -> None:
-        if self.flank_class is not None and self.flank_class not in FLANK_CLASSES:
-            raise InputError(
-                f"[gear.tolerance] flank_class = {self.flank_class}: must be a whole number from 1 to 12 (ISO 1328-1)"
-            )
+        if self.flank_class is not None:
+            check_whole("[gear.tolerance] flank_class", self.flank_class)
+            if self.flank_class not in FLANK_CLASSES:
+                raise InputError(
+                    f"[gear.tolerance] flank_class = {self.flank_class}: must be a whole number from 1 to 12 (ISO 1328-1)"
+                )
         for name in self.__slots__[:-1]:
-            value = getattr(self, name)
-            if value is not None and not 0.0 <= value <= 10.0:
-                raise InputError(f"[gear.tolerance] {name} = {value:g}: must lie from 0 to 10")
+            if getattr(self, name) is not None:
+                unit = "modules" if name == "profile_shift" else "mm"
+                check_between("gear.tolerance", name, getattr(self, name), 0.0, 10.0, unit)
 
     def or_usual(self, tip_diameter: float, root_diameter: float, bore_diameter: float, face_width: float) -> GearTolerance:
         """The tolerances with the usual ones where none is stated, for a gear of these dimensions (mm).

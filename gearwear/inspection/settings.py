@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.given import check_whole
+from gearwear.design.given import check_choice, check_whole, check_within, two_numbers
 from gearwear.design.quantity import shown
 from gearwear.design.scan_spec import AXES
-from gearwear.errors import InputError
+from gearwear.errors import InputError, check_kind
 from gearwear.inspection.k_band import KBands
 from gearwear.inspection.tolerances import Edition
 
@@ -109,11 +108,10 @@ class Settings:
     axis: str | None = None
 
     def __post_init__(self) -> None:
-        if self.edition not in tuple(Edition):
-            raise InputError(f"edition = {shown(self.edition)}: one of {', '.join(map(repr, map(str, Edition)))} would be right")
+        check_choice("edition", self.edition, Edition)
         object.__setattr__(self, "edition", Edition(self.edition))  # the same word as a plain string is none
-        if self.axis is not None and self.axis not in AXES:
-            raise InputError(f"axis = {shown(self.axis)}: one of {', '.join(AXES)} would be right")
+        if self.axis is not None:
+            check_choice("axis", self.axis, AXES)
         for name, least in (("required_class", 0), ("span_teeth", 1), ("sector", 1)):
             if getattr(self, name) is not None:
                 check_whole(name, getattr(self, name), least)
@@ -129,27 +127,23 @@ class Settings:
         if self.control_roll is not None and self.control_roll == self.profile_end:
             raise InputError(f"control_roll and profile_end are both {self.profile_end:g} mm: two ends of a range would be right")
         _check_covariance(self.pose_covariance)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)
+        check_kind(self.k_bands, KBands | None, "k_bands", "a KBands, or None,")
+        check_kind(self.laboratory, bool | np.bool_, "laboratory", "True or False")
 
 
 def _check_number(name: str, value: float | None, low: float, high: float, right: str) -> None:
-    if value is not None and not (_is_number(value) and low <= value <= high and value < math.inf):  # refuses NaN too
-        raise InputError(f"{name} = {shown(value)}: {right} would be right")
+    if value is not None:
+        check_within(name, value, low, high, right)
 
 
 def _check_stretch(name: str, value: tuple[float, float] | None) -> None:
     """Two finite lengths, the smaller one first; of `helix_band` in either order, since on a ring L falls from root to tip."""
     if value is None:
         return
-    try:
-        first, last = value
-    except (TypeError, ValueError):
-        first = last = math.nan
-    if not (_is_number(first) and _is_number(last) and max(abs(first), abs(last)) <= LONGEST and first != last):
-        raise InputError(f"{name} = {shown(value)}: two lengths in mm, such as (1.5, 12.0), would be right")
+    right = "two lengths in mm, such as (1.5, 12.0),"
+    first, last = two_numbers(name, value, right)
+    if not (max(abs(first), abs(last)) <= LONGEST and first != last):
+        raise InputError(f"{name} = {shown(value)}: {right} would be right")
     if first > last and name != "helix_band":
         raise InputError(f"{name} = {first:g} to {last:g} mm: from the lower z to the higher one would be right")
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import get_args
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
+from gearwear.design.given import check_choice, check_several, check_within
+from gearwear.design.quantity import as_given, shown
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
@@ -55,11 +59,29 @@ class Ahead:
         Cycles since new for which to forecast, none below `cycles_run`.
     limits : tuple of (quantity, float)
         Limits in mm: greatest "depth" on the flank, loss of "thickness" (arc at the reference circle), growth of the normal "backlash".
+
+    Raises
+    ------
+    InputError
+        If cycles or a limit are no number above 0, cycles lie before now, or a limit is of something else.
     """
 
     cycles_run: float
     cycles: tuple[float, ...] = ()
     limits: tuple[tuple[Quantity, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        least = math.ulp(0.0)
+        check_within("cycles_run", self.cycles_run, least, math.inf, "a number above 0, the cycles in which the wear came about,")
+        for cycles in check_several("cycles", self.cycles, "cycles since new"):
+            check_within(
+                "cycles", cycles, self.cycles_run, math.inf, f"a number from cycles_run, {as_given(self.cycles_run)}, up"
+            )
+        for pair in check_several("limits", self.limits, "pairs such as ('depth', 0.2)"):
+            if not (isinstance(pair, Sequence) and not isinstance(pair, str) and len(pair) == 2):
+                raise InputError(f"limits = {shown(pair)}: pairs such as ('depth', 0.2), in mm, would be right")
+            check_choice("what limits are of", pair[0], get_args(Quantity))
+            check_within(f"limit of the {pair[0]}", pair[1], least, math.inf, "a number above 0, in mm,")
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,7 @@ IMPOSSIBLE = [
     ({"sample_factor": math.inf}, "sample_factor = inf"),
     ({"scale_std": -1e-4}, "scale_std = -0.0001: a number from 0 to 1"),
     ({"noise": -1.0}, "noise = -1.0: 0 to"),
-    ({"edition": "x"}, "edition = 'x': one of 'ISO 1328-1:2013', 'ISO 1328-1:1995'"),
+    ({"edition": "x"}, "edition = 'x': one of ISO 1328-1:2013, ISO 1328-1:1995"),
     ({"axis": "hub"}, "axis = 'hub': one of teeth, bore, bands, ends"),
     ({"pose_covariance": np.eye(3)}, "pose_covariance of shape (3, 3): (6, 6)"),
     ({"pose_covariance": np.full((6, 6), np.nan)}, "pose_covariance of shape (6, 6): (6, 6) finite numbers"),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.given import check_within
 
 DIVERGING = (
     "#053061", "#1f5fa5", "#3f8fc4", "#85bcd9", "#c6dfec", "#f5f5f3",
@@ -36,10 +37,22 @@ class ColourScale:
         Deviation at the ends of the scale; larger ones have the colour of the end.
     linear_um : float or None
         None: linear throughout.
+
+    Raises
+    ------
+    InputError
+        If a limit is no number above 0, or the scale is linear beyond its end.
     """
 
     limit_um: float
     linear_um: float | None = None
+
+    def __post_init__(self) -> None:
+        check_within("limit_um", self.limit_um, math.ulp(0.0), math.inf, "a number above 0, in µm,")
+        if self.linear_um is not None:
+            check_within(
+                "linear_um", self.linear_um, math.ulp(0.0), self.limit_um, "a number above 0 and at most limit_um, in µm,"
+            )
 
     def fraction(self, deviation_um: Floats) -> Floats:
         """Place on the scale, −1 … 1; nan stays nan."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from numbers import Integral
 from typing import Any
 
 import numpy as np
 
 from gearwear.design.gear import Gear
-from gearwear.design.given import check_number
+from gearwear.design.given import check_within
+from gearwear.design.quantity import shown
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError, check_kind
 from gearwear.loaded.study import LoadedStudy
@@ -56,10 +58,23 @@ def check_drawn(kind: type, **given: object) -> None:
         check_kind(value, kind, name, RIGHT[kind])
 
 
-def check_numbers(**given: object) -> None:
-    """Refuse what is no number, by its name; any unit is in that."""
+def check_above_zero(**given: object) -> None:
+    """Refuse what is no finite number above 0, by its name; any unit is in that."""
     for name, value in given.items():
-        check_number(name, value, "")
+        check_within(name, value, math.ulp(0.0), math.inf, "a number above 0")
+
+
+def check_colour(colour: object) -> None:
+    """Refuse what matplotlib does not know as a colour.
+
+    >>> check_colour("no colour")
+    Traceback (most recent call last):
+    gearwear.errors.InputError: colour = 'no colour': one of matplotlib, such as '#0b5c9c' or 'tab:blue', would be right
+    """
+    from matplotlib.colors import is_color_like
+
+    if not is_color_like(colour):
+        raise InputError(f"colour = {shown(colour)}: one of matplotlib, such as '#0b5c9c' or 'tab:blue', would be right")
 
 
 def check_arrays(**given: tuple[Any, tuple[int | str, ...]]) -> None:

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.given import check_whole
+from gearwear.design.given import check_whole, check_within
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import ALARM, BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
-from gearwear.report.figures.given import check_arrays, check_axis, check_drawn, check_numbers
+from gearwear.report.figures.given import check_above_zero, check_arrays, check_axis, check_colour, check_drawn
 from gearwear.report.figures.legend import legend_above
 from gearwear.report.words.numbers import effect_title
 from gearwear.wear.thickness import SectionThickness
@@ -158,7 +158,7 @@ def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ t
     """Draw the legend of the signed scale on `axis`, up to `high` on it; 0: of depths, which have no sign."""
     check_axis(axis)
     check_drawn(ColourScale, scale=scale)
-    check_numbers(high=high)
+    check_within("high", high, 0.0, 1.0, "a number from 0, of depths, to 1")
     shade_bar(axis, colours(), -1.0, 1.0, label)
     ticks = [
         (at, text)
@@ -258,7 +258,7 @@ def tooth_section(axis: Axes, nominal_xy: Floats, worn_xy: Floats, reference_rad
     """
     check_axis(axis)
     check_arrays(nominal_xy=(nominal_xy, ("n", 2)), worn_xy=(worn_xy, ("n", 2)))
-    check_numbers(reference_radius_mm=reference_radius_mm, magnify=magnify)
+    check_above_zero(reference_radius_mm=reference_radius_mm, magnify=magnify)
     shown = nominal_xy + magnify * (worn_xy - nominal_xy)
     axis.fill(
         np.concatenate([nominal_xy[:, 0], shown[::-1, 0]]), np.concatenate([nominal_xy[:, 1], shown[::-1, 1]]),
@@ -291,7 +291,7 @@ def magnification(nominal_xy: Floats, worn_xy: Floats, share: float = 0.06) -> f
     50.0
     """
     check_arrays(nominal_xy=(nominal_xy, ("n", 2)), worn_xy=(worn_xy, ("n", 2)))
-    check_numbers(share=share)
+    check_above_zero(share=share)
     worst = float(np.hypot(*(worn_xy - nominal_xy).T).max(initial=0.0))
     wanted = share * float(np.ptp(nominal_xy[:, 1])) / max(worst, 1e-9)
     return max((f for f in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0) if f <= wanted), default=1.0)
@@ -398,7 +398,8 @@ def traces(axis: Axes, along_mm: Floats, deviation_um: Floats, um_per_tooth: flo
     """
     check_axis(axis)
     check_arrays(along_mm=(along_mm, ("n",)), deviation_um=(deviation_um, ("teeth", "n")))
-    check_numbers(um_per_tooth=um_per_tooth)
+    check_above_zero(um_per_tooth=um_per_tooth)
+    check_colour(colour)
     teeth = len(deviation_um)
     number = np.arange(1, teeth + 1)
     axis.vlines(number, along_mm[0], along_mm[-1], color=RULE, lw=0.8, zorder=1)
