@@ -386,6 +386,17 @@ def test_the_first_warning_is_told_whole():
     assert whole[0].upper() + whole[1:] in said and "! and 2 more, in the report" in said
 
 
+def test_warnings_get_the_lines_that_the_rest_leaves():
+    """Of a gear alone three of four warnings stood behind "and 3 more" on a screen that had room for them."""
+    results = bare_results()
+    few, many = (replace(results, notes=tuple(f"warning {i}." for i in range(n))) for n in (6, 60))
+    said = [line for line, _ in lines(few, 80)]
+    assert [line for line in said if line.startswith("! Warning")] == [f"! Warning {i}." for i in range(6)]
+    assert not any("in the report" in line for line in said)
+    crowd = [line for line, _ in lines(many, 80)]
+    assert len(crowd) == 21 and crowd[-1].endswith(" more, in the report")
+
+
 @pytest.mark.parametrize("number", [1, 9, 60])
 def test_files_that_have_no_room_are_counted(number):
     """A list that ends "sections.dxf, …" did not say whether the coloured bodies that were asked for are there."""

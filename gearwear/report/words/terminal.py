@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDEST = 100
+MOST_LINES = 21
+"""Lines of the summary, without those that name the files: with these and a prompt it fits a terminal of 24 lines. Warnings get what the rest leaves."""
 ASCII = str.maketrans({
     "−": "-", "µ": "u", "→": "->", "±": "+/-", "³": "3", "²": "2", "·": "-", "…": "...", "α": "alpha", "–": "-", "°": " deg",
     "×": "x", "\u00a0": " ", "’": "'",
@@ -70,7 +72,7 @@ def print_summary(results: Results, files: Sequence[str] = (), folder: Path | st
 
 
 def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
-    """The summary as lines no wider than `width`, with the rich style of each; at most 21 of them."""
+    """The summary as lines no wider than `width`, with the rich style of each; at most `MOST_LINES` of them, the last of which warn."""
     said = [(_cut(subject(results.part, results.gear, results.measured.scans, width), width), "dim"), ("", "")]
     grave, broken = grave_doubts(results), broken_words(results)
     said += [
@@ -93,7 +95,7 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
         said += [(line, "") for line in wrapped(running_words(second), width, 3)]
     said_above = {sentence(piece.sentence) for piece in results.pieces}
     warned = [text for text in doubts(results) if not text.startswith(("Unexplained", "Doubtful")) and text not in said_above]
-    room = 3 if grave or broken else 4
+    room = max(3 if grave or broken else 4, MOST_LINES - len(said))
     for i, text in enumerate(warned):
         free = room - (i + 1 < len(warned))  # a line for how many more there are
         warning = to_a_clause(f"! {text}", width, max(free, 1) if i == 0 else len(text))
