@@ -205,10 +205,11 @@ class TestStages:
         (lambda: gw.fit_wear_law("pinion", 3, 114.3, [1.0], [0.1]), "gear of type str: one of design.gears"),
         (lambda: gw.fit_wear_law(*bundled().gears.values(), 114.3, "roll", [0.1]), "roll of type <U4: an array of real numbers"),
         (lambda: gw.forecast_wear("fits", 1e6, [2e6]), "one of fits of type str: what gw.fit_wear_law returns"),
-        (lambda: gw.cycles_left(None, 1e6, 0.1, "depth"), "fits of type NoneType: what gw.fit_wear_law returns"),
+        (lambda: gw.cycles_left(None, 1e6, 0.1, "depth"), "fits = None: a list of what gw.fit_wear_law returns"),
         (lambda: gw.nominal_profiles(scanned()[0]), "gear of type Design: one of design.gears"),
-        (lambda: gw.nominal_profiles(bundled().gears["gear"], z=[3.0, 2.0]), r"z of shape \(2,\): one or more finite numbers that rise"),
-        (lambda: gw.nominal_profiles(bundled().gears["gear"], radius=[np.nan]), "radius of shape"),
+        (lambda: gw.nominal_profiles(bundled().gears["gear"], z=[None, 2.0]), r"z = \[None, 2.0\]: one or more finite"),
+        (lambda: gw.nominal_profiles(bundled().gears["gear"], z=[3.0, 2.0]), r"z = \[3.0, 2.0\]: one or more finite numbers that rise"),
+        (lambda: gw.nominal_profiles(bundled().gears["gear"], radius=[np.nan]), r"radius = \[nan\]: one or more finite"),
     ])  # fmt: skip
     def test_what_a_stage_does_not_take_is_told(self, stage, words):
         """Each ended in an AttributeError or TypeError of a module that the user does not know."""

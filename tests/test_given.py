@@ -37,6 +37,7 @@ SELDOM_RIGHT = {
     "two in an array": np.array([1.0, 2.0]),
     "below 0": -1.0,
     "none in it": (),
+    "a table": np.ones((2, 2)),
 }
 """Right for some."""
 

@@ -124,9 +124,9 @@ def rising(name: str, values: ArrayLike) -> Floats:
 
     >>> rising("z", 7.5), rising("z", [1.0, 0.5])
     Traceback (most recent call last):
-    gearwear.errors.InputError: z of shape (2,): one or more finite numbers that rise, in mm, would be right
+    gearwear.errors.InputError: z = [1.0, 0.5]: one or more finite numbers that rise, in mm, would be right
     """
     array = np.atleast_1d(real_array(name, values))
     if array.ndim != 1 or not array.size or not np.isfinite(array).all() or not (np.diff(array) > 0.0).all():
-        raise InputError(f"{name} of shape {array.shape}: one or more finite numbers that rise, in mm, would be right")
+        raise InputError(f"{name} = {shown(values)}: one or more finite numbers that rise, in mm, would be right")
     return array

@@ -14,7 +14,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card
 from gearwear.design.gear import Gear
-from gearwear.design.given import rising
+from gearwear.design.given import check_several, rising
 from gearwear.design.quantity import as_given, at_least, at_most, counted
 from gearwear.design.side import Side
 from gearwear.errors import InputError, check_kind
@@ -117,6 +117,15 @@ def section_radii(gear: Gear) -> Floats:
         return even
     knees = [math.hypot(gear.base_radius, knee) for side in Side for knee in gear.drawn(side).profile_knees]
     return np.union1d(even, [gear.form_radius, *knees])
+
+
+def profiles_of_pair(name: str, given: object, right: str) -> tuple[ToothProfiles, ToothProfiles]:
+    """Two profiles as they were given, in their order; refused where these are none."""
+    for one in (both := check_several(name, given, right)):
+        check_kind(one, ToothProfiles, f"one of {name}", "what gw.nominal_profiles returns")
+    if len(both) != 2:
+        raise InputError(f"{name}: {len(both)} given; {right} would be right")
+    return both[0], both[1]
 
 
 def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None = None) -> ToothProfiles:

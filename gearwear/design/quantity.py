@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable
 
 MISSING = "–"
@@ -94,9 +95,14 @@ def as_given(value: float) -> str:
 
 
 def shown(value: object) -> str:
-    """`value` as a message shows it: on one line, and short."""
+    """`value` as a message shows it: on one line, and short.
+
+    >>> from numpy import eye
+    >>> shown(eye(2))
+    'array([[1., 0.], [0., 1.]])'
+    """
     try:
-        text = repr(value)
+        text = re.sub(r"\n\s*", " ", repr(value))
     except ValueError:  # Python does not print integers of more than 4300 digits
         return "a number of thousands of digits"
     return text if len(text) <= 60 else f"{text[:57]}..."

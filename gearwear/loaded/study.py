@@ -13,7 +13,7 @@ from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.given import check_choice, check_number, check_several, check_whole
 from gearwear.design.load import LoadSpec
 from gearwear.design.pair import Design, check_design
-from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles, nominal_profiles, profiles_of_pair
 from gearwear.design.side import Side
 from gearwear.errors import InputError, check_kind
 from gearwear.loaded.contact import SLICES, loaded_contact, loaded_variants
@@ -197,10 +197,9 @@ def study_load(
     """
     check_design(design)
     check_kind(load, LoadSpec | None, "load", "a gw.LoadSpec, or None for that of the design,")
-    for profiles in check_several("flanks", () if flanks is None else flanks, PAIR):
-        check_kind(profiles, ToothProfiles, "one of flanks", "what gw.nominal_profiles returns")
-    if flanks is not None and len(flanks) != 2:
-        raise InputError(f"flanks: {len(flanks)} given; {PAIR} would be right")
+    if flanks is not None:
+        flanks = profiles_of_pair("flanks", flanks, PAIR)
+    drawn = [profiles_of_pair("drawn", pair, PAIR) for pair in check_several("drawn", drawn, PAIR)]
     check_whole("start_tooth", start_tooth)
     check_choice("cycle", cycle, CYCLES)
     drive_side = Side.of(drive_side)

@@ -14,9 +14,9 @@ from itertools import chain
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.given import check_choice, check_number, check_several, check_whole
+from gearwear.design.given import check_choice, check_number, check_several, check_whole, check_within
 from gearwear.design.pair import CENTRE_ROUNDING
-from gearwear.design.profiles import ToothProfiles
+from gearwear.design.profiles import ToothProfiles, profiles_of_pair
 from gearwear.design.quantity import as_given, at_least, at_most, shown
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
@@ -180,19 +180,14 @@ def _check_turning(
     if not isinstance(tolerances, Sequence) or not tolerances:
         raise InputError(f"tolerances {shown(tolerances)}: a sequence of one or more would be right")
     for tolerance in tolerances:
-        check_number("tolerances", tolerance, "mm")
-        if not 0.0 <= tolerance < math.inf:
-            raise InputError(f"tolerances {tolerances}: none below 0 or without end would be right")
+        check_within("tolerances", tolerance, 0.0, math.inf, "numbers from 0 up, in mm,")
 
 
 def _check_variants(
     driver: ToothProfiles, driven: ToothProfiles, variants: Sequence[tuple[ToothProfiles, ToothProfiles]]
 ) -> None:
     for pair in check_several("variants", variants, PAIRS):
-        if len(members := check_several("variants", pair, PAIRS)) != 2:
-            raise InputError(f"variants: {len(members)} gears in one; a list of {PAIRS} would be right")
-        for base, other in zip((driver, driven), members, strict=True):
-            check_kind(other, ToothProfiles, "one of variants", "what gw.nominal_profiles returns")
+        for base, other in zip((driver, driven), profiles_of_pair("variants", pair, PAIRS), strict=True):
             if not (np.array_equal(base.radius, other.radius) and np.array_equal(base.z, other.z)):
                 raise InputError("a variant has other radii or heights than the gear itself: the same would be right")
 

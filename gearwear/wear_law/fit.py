@@ -15,7 +15,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
-from gearwear.design.given import check_choice, check_number, real_array
+from gearwear.design.given import check_choice, check_number, check_within, real_array
 from gearwear.errors import InputError, check_kind
 from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.threads import on_one_thread
@@ -406,9 +406,7 @@ def fit_wear_law(
         check_kind(one, Gear, name, "one of design.gears")
     check_number("centre_distance", centre_distance, "mm")
     profile = _Profile.of(roll, depth, std, width)
-    check_number("correlation_length", correlation_length, "mm")
-    if not correlation_length >= 0.0:
-        raise InputError(f"wear law: correlation length = {correlation_length:g} mm: must not be below 0")
+    check_within("correlation_length", correlation_length, 0.0, math.inf, "a number from 0 up, in mm,")
     path = path_of_contact(gear, mate, centre_distance)
     profile = profile.on(path)
     deepest, thick = float(np.abs(profile.depth).max()), gear.tooth_thickness

@@ -16,7 +16,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, few
-from gearwear.design.given import check_choice, check_number, real_array
+from gearwear.design.given import check_choice, check_number, check_several, check_within, real_array
 from gearwear.design.quantity import as_given, at_least, at_most, outside
 from gearwear.errors import InputError, check_kind
 from gearwear.meshing.path import PathOfContact
@@ -239,9 +239,7 @@ def cycles_left(
     [2.95, 3.0, 3.03]
     """
     check_confidence(confidence)
-    check_number("limit", limit, "mm")
-    if not 0.0 < limit < math.inf:
-        raise InputError(f"limit {limit:g} mm: must be above 0")
+    check_within("limit", limit, math.ulp(0.0), math.inf, "a number above 0, in mm,")
     check_choice("quantity", quantity, get_args(Quantity))
     run, states = _positive(cycles_run), [FlankState.of(fit) for fit in _alike(fits)]
     measure = measured_by(states[0], quantity, radius)
@@ -253,20 +251,16 @@ def cycles_left(
 
 
 def _alike(fits: WearFit | Sequence[WearFit]) -> tuple[WearFit, ...]:
-    if not isinstance(fits, WearFit):
-        check_kind(fits, Sequence, "fits", FITS)
-    fits = (fits,) if isinstance(fits, WearFit) else tuple(fits)
-    for fit in fits:
+    each = [fits] if isinstance(fits, WearFit) else check_several("fits", fits, FITS)
+    for fit in each:
         check_kind(fit, WearFit, "one of fits", FITS)
-    if not fits:
+    if not each:
         raise InputError("forecast: there is no fit of the wear law, and without one there is no forecast")
-    return alike_fits(fits)
+    return alike_fits(tuple(each))
 
 
 def _positive(cycles_run: float) -> float:
-    check_number("cycles_run", cycles_run, "")
-    if not 0.0 < cycles_run < math.inf:
-        raise InputError(f"cycles run {cycles_run:g}: must be above 0; a rate needs the cycles in which the wear came about")
+    check_within("cycles_run", cycles_run, math.ulp(0.0), math.inf, "a number above 0, the cycles in which the wear came about,")
     return cycles_run
 
 

@@ -212,11 +212,11 @@ def test_bad_input_is_named(pinion, wheel):
     with pytest.raises(InputError, match="standard deviations must be above 0"):
         fit_wear_law(pinion, wheel, C, ROLL, 0.01 * ROLL, np.zeros(90))
     fit = fitted(pinion, wheel)
-    with pytest.raises(InputError, match="cycles run 0: must be above 0"):
+    with pytest.raises(InputError, match="cycles_run = 0"):
         forecast_wear(fit, 0.0, np.array([1.0]))
     with pytest.raises(InputError, match="cycles 5: must not be below the cycles run, 10"):
         forecast_wear(fit, 10.0, np.array([5.0]))
-    with pytest.raises(InputError, match=r"limit 0 mm"):
+    with pytest.raises(InputError, match="limit = 0"):
         cycles_left(fit, 10.0, 0.0, "depth")
     with pytest.raises(InputError, match=r"radius 35\.8\d* mm"):
         cycles_left(fit, 10.0, 0.1, "thickness", radius=35.81)

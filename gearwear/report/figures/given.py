@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -93,15 +92,13 @@ def check_arrays(**given: tuple[Any, tuple[int | str, ...]]) -> None:
         check_kind(value, np.ndarray, name, f"{right} of numbers")
         if value.dtype.kind not in "fiu":
             raise InputError(f"{name} of type {value.dtype}: {right} of numbers would be right")
-        if value.ndim != len(shape) or not value.size:
-            raise InputError(f"{name} of shape {value.shape}: {right} would be right")
-        for length, wanted in zip(value.shape, shape, strict=True):
-            if isinstance(wanted, Integral):
-                if length != wanted:
-                    raise InputError(f"{name} of shape {value.shape}: {right} would be right")
-                continue
-            other, whose = known.setdefault(str(wanted), (length, name))
-            if other != length:
+        fits = value.ndim == len(shape) and value.size > 0
+        for length, wanted in zip(value.shape, shape, strict=True) if fits else ():
+            if isinstance(wanted, int):
+                fits = fits and length == wanted
+            elif (first := known.setdefault(wanted, (length, name)))[0] != length:
                 raise InputError(
-                    f"{name} of shape {value.shape}: {right} with {wanted} = {other}, as {whose} has, would be right"
+                    f"{name} of shape {value.shape}: {right} with {wanted} = {first[0]}, as {first[1]} has, would be right"
                 )
+        if not fits:
+            raise InputError(f"{name} of shape {value.shape}: {right} would be right")
