@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.quantity import counted
 from gearwear.errors import InputError
 from gearwear.scan.contents import Contents
 from gearwear.scan.triangles import share_vertices, unit, vertex_normals
@@ -80,7 +81,9 @@ def clean(contents: Contents) -> tuple[Contents, str]:
         if kind == "section":
             points = points * np.array([1.0, 1.0, 0.0])
     if len(points) < LEAST_POINTS[kind]:
-        held = f"{len(points):,} of its {total:,} points can be used" if len(points) < total else f"holds {total:,} points"
+        held = (
+            f"{len(points):,} of its {total:,} points can be used" if len(points) < total else f"holds {counted(total, 'point')}"
+        )
         raise InputError(f"{held}: at least {LEAST_POINTS[kind]} would be right")
     return Contents(points, normals, triangles, rejected, contents.units), kind
 

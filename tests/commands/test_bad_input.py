@@ -102,7 +102,7 @@ SCANS = [
     ("junk.ply", "PLY header"),
     ("words.txt", "no line of numbers"),
     ("nan.xyz", "finite"),
-    ("one.xyz", "holds 1 point"),
+    ("one.xyz", "holds 1 point: at least"),
     ("ten.xyz", "holds 10 points"),
     ("hundred.xyz", "from a denser scan"),
     ("same.xyz", "1 of its 3,000 points"),
