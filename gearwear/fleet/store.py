@@ -212,6 +212,7 @@ def _listed(file: Path) -> Iterator[Listed]:
     """The rows of one kept manifest."""
     try:
         with file.open(encoding="utf-8", errors="surrogateescape", newline="") as stream:
+            record = None
             for record in csv.DictReader(stream, restkey="", restval=""):
                 if "" in record or not record.get("gear_id") or not record.get("key"):
                     raise ValueError("a row without key or gear_id, or longer than its head")
@@ -219,6 +220,8 @@ def _listed(file: Path) -> Iterator[Listed]:
                 _number(record.get("cycles_run", ""), MOST_CYCLES)
                 read_moment(record.get("inspected", ""))
                 yield Listed(record.pop("key"), record, limits)
+            if record is None:
+                raise ValueError("no row")
     except (OSError, ValueError, csv.Error) as error:
         raise InputError(
             f"{file}: is no list that gearwear batch kept ({' '.join(str(error).split())[:200]}); the manifest run again would be right"

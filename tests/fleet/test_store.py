@@ -124,6 +124,16 @@ def test_a_folder_that_is_none_of_a_fleet_is_refused(tmp_path):
         pass
 
 
+@pytest.mark.parametrize("left", ["", "key,gear_id\n", "a,b\n"])
+def test_a_list_that_lost_its_rows_is_told_by_its_file(store, left):
+    store.keep_manifest("a.csv", [(row("G1"), "k1", {})])
+    (store.folder / "manifests" / "a.csv").write_text(left)
+    with pytest.raises(
+        InputError, match=r"a\.csv: is no list that gearwear batch kept \(no row\); the manifest run again would be right"
+    ):
+        store.listed()
+
+
 def test_manifests_are_kept_with_keys_and_limits_and_replaced_by_name(store):
     store.keep_manifest("a.csv", [(row("G1"), "k1", {"wear_depth_mm": 0.1}), (row("G2"), "k2", {})])
     store.keep_manifest("b.csv", [(row("G1"), "k1", {"wear_depth_mm": 0.1})])
