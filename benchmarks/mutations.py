@@ -112,6 +112,16 @@ MUTATIONS = [
         ("inspection/pitch.py", "own[..., 0, :] + t", "0.0 * own[..., 0, :] + t", "inspection/test_line_positions.py"),
         ("fleet/batch.py", "first[held].gear_id != row.gear_id", "first[held] is row", "fleet/test_same_scan.py"),
         # a mate narrower than the face
+        # bent teeth
+        ("diagnose/bent_teeth.py", "up < 0.75", "up < 2.0", "diagnose/core/test_bent_teeth.py"),
+        ("diagnose/bent_teeth.py", " & (-other > share * own)", "", "diagnose/core/test_bent_teeth.py"),
+        ("diagnose/bent_teeth.py", " & (height[:, side.index] > share * there * own)", "", "diagnose/core/test_bent_teeth.py"),
+        ("diagnose/bent_teeth.py", "(own > far)", "(own > 0.0)", "diagnose/core/test_bent_teeth.py"),
+        ("diagnose/bent_teeth.py", "kept.std(ddof=1) * (n - 1) * t", "0.3 * kept.std(ddof=1) * (n - 1) * t", "diagnose/core/test_bent_teeth.py"),
+        ("diagnose/bent_teeth.py", "for step in range(len(values) // 4)", "for step in range(1)", "diagnose/core/test_bent_teeth.py"),
+        ("diagnose/effects/pitch.py", "if tooth not in bent", "if True", "diagnose/test_bent_tooth.py"),
+        ("diagnose/loop.py", "target=fit.target - moved", "target=fit.target", "comparison/test_bent_tooth.py"),
+        ("comparison/before.py", " - _bent(after)", "", "comparison/test_bent_tooth.py"),
         ("diagnose/active_face.py", "misfit[fitted[:, -1] <= 0.0] = math.inf", "pass", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "> sure or not", "> -100.0 or not", "diagnose/core/test_active_face.py"),
         ("diagnose/active_face.py", "if not any(rows.stretch(one) for rows in elsewhere)", "if elsewhere", "diagnose/core/test_active_face.py"),

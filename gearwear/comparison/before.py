@@ -16,6 +16,7 @@ from gearwear.comparison.same_teeth import SameTeeth, same_teeth
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from gearwear.design.surface import BORE, FLANK, ROOT, TIP
+from gearwear.diagnose.effects.bent_tooth import BENT_TOOTH
 from gearwear.diagnose.no_datum import leaves_a_datum
 from gearwear.diagnose.rules import rules
 from gearwear.errors import InputError
@@ -53,12 +54,21 @@ def unworn_gear(
 
 def what_changed(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
     """What changed from before to after. What both scans share is design, manufacture and scanner; each scan's own measurement
-    effects are taken out first, and then what of the difference a motion, a coat and a scale explain. Where the unworn gear was not seen, the effects found in the worn one
-    stand in for it."""
+    effects are taken out first, as is what bent a tooth, and then what of the difference a motion, a coat and a scale explain. Where the unworn gear was not
+    seen, the effects found in the worn one stand in for it."""
     corrected, before = after.corrected, unworn.corrected.points.deviation
-    changed = corrected.points.deviation - before
+    changed = corrected.points.deviation - before - _bent(after) + _bent(unworn)
     changed -= _measured_otherwise(corrected, changed, after, unworn)
     return corrected.with_deviation(np.where(np.isfinite(before), changed, after.as_made.points.deviation))
+
+
+def _bent(measured: MeasuredGear) -> Floats:
+    """What teeth that an overload bent do to the deviation of each cell, (m,) mm: metal that was moved and not lost."""
+    cells, loop, result = measured.cells, measured.loop, np.zeros(len(measured.cells.count))
+    for effect in () if loop is None else loop.effects:
+        if effect.name == BENT_TOOTH and loop is not None:
+            result[cells.seen] += loop.of_effect(effect, cells.points.take(cells.seen))
+    return result
 
 
 def _measured_otherwise(cells: Cells, changed: Floats, after: MeasuredGear, unworn: MeasuredGear) -> Floats:

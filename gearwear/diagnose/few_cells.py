@@ -19,7 +19,7 @@ from gearwear.diagnose.columns import CellColumns, cuts_of
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context
-from gearwear.diagnose.effects.each_tooth import EachTooth, teeth_with_amounts
+from gearwear.diagnose.effects.each_tooth import EachTooth
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import CellGrid, cells_of
@@ -120,10 +120,12 @@ def _of_teeth_kept(dictionary: Dictionary, context: Context, kept: Ints) -> tupl
     """Of what each tooth has of its own, where some are `kept`: which column is taken off each, (p,), -1 for none, so that the last that is kept has minus the
     sum of the others' in place of one that is not; and which columns are left out, (p,)."""
     less, none = np.full(dictionary.count, -1), np.zeros(dictionary.count, dtype=np.bool_)
-    *others, last = teeth_with_amounts(context)
-    there = np.isin(others, kept)
-    for candidate in dictionary.candidates if not (there.all() and last in kept) else ():
-        if isinstance(candidate.effect, EachTooth):
+    for candidate in dictionary.candidates:
+        if not isinstance(candidate.effect, EachTooth):
+            continue
+        *others, last = candidate.effect.teeth(context)
+        there = np.isin(others, kept)
+        if not (there.all() and last in kept):
             own, none[candidate.columns] = candidate.columns[there], ~there
             if last not in kept and len(own):
                 less[own[:-1]], none[own[-1]] = own[-1], True

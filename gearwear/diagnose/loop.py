@@ -16,11 +16,13 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.active_face import active_faces
+from gearwear.diagnose.bent_teeth import bent_teeth
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary, build_dictionary, with_worn
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
+from gearwear.diagnose.effects.bent_tooth import BENT_TOOTH, BentTooth
 from gearwear.diagnose.effects.edge_rounding import EDGE_ROUNDING
 from gearwear.diagnose.effects.face_level import FACE_LEVEL
 from gearwear.diagnose.effects.root_form import ROOT_FORM
@@ -155,6 +157,10 @@ def _closed(
     every = tuple(effect for effect in catalogue() if effect.searched) if effects is None else effects
     made = tuple(effect for effect in every if effect.kind is not Kind.WEAR)
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
+    if context.bent and all(effect.name != BENT_TOOTH for effect in made):
+        context = replace(context, bent=())
+    if context.bent:
+        always |= {BENT_TOOTH}
 
     apart = np.zeros(len(cells.count), dtype=np.bool_)
 
@@ -300,7 +306,7 @@ def _first_search(
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
     first = fit if out is None else replace(fit, use=sound & ~out)
-    return Searched(sound, *_search(fit, first.pose_residual(), noise, context, always, out, begun))
+    return Searched(sound, *_search(fit, _unexplained(first, context), noise, context, always, out, begun))
 
 
 def _of_waves(waves: tuple[SpaceWave, ...], cells: Cells) -> tuple[Pattern, ...]:
@@ -327,7 +333,7 @@ def _explained(searched: Searched, noise: float, always: frozenset[str], known: 
         # A wave round the gear drowns what is left out tooth by tooth: once more without it.
         new = _sum(waves, len(target)) - _sum(known, len(target))
         fit = replace(fit, target=np.where(fit.cells.seen, target - new, 0.0), use=searched.sound)
-        fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
+        fit, problem, model = _search(fit, _unexplained(fit, context), noise, context, always)
         stood = eliminate(fit, problem, model, noise, waves)
         fit = replace(fit, target=target)
     # Where a form of all teeth is left that is larger than the noise, it decides between effects that are nearly alike, and not they themselves.
@@ -353,6 +359,15 @@ def _explained(searched: Searched, noise: float, always: frozenset[str], known: 
     loop = replace(loop, effects=tuple(effect.or_one_of(instead.get(effect.name, ())) for effect in loop.effects))
     # What all teeth share is known from the others, and no texture under the wear of one of them.
     return replace(loop, covariance=estimate_covariance(fit.cells, loop.left, loop.use, noise)) if loop.patterns else loop
+
+
+def _unexplained(fit: Fit, context: Context) -> Floats:
+    """What the pose leaves, without what the teeth bent show at a first look: no flank of theirs is worn nor torn for that."""
+    if not context.bent:
+        return fit.pose_residual()
+    seen, moved = fit.cells.seen, np.zeros(len(fit.target))
+    moved[seen] = BentTooth().first_look(fit.cells.points.take(seen), context)
+    return replace(fit, target=fit.target - moved).pose_residual()
 
 
 def _with_fillets(fit: Fit, sound: Bools) -> Fit:
@@ -468,7 +483,7 @@ def make_context(
     shift = min(float(np.median(tips)), 0.0) if len(tips) else 0.0
     return Context(
         gear=cells.grid.gear, surfaces=present, scan_axes=scan_axes, planar=planar, mate=mate, row_height=rows, scale_limit=limit,
-        fillet_edges=edges, tip_shift=shift, faces=active_faces(cells),
+        fillet_edges=edges, tip_shift=shift, faces=active_faces(cells), bent=bent_teeth(cells),
     )  # fmt: skip
 
 

@@ -14,6 +14,7 @@ from scipy.special import ndtri, stdtrit
 from gearwear.arrays import Bools, Floats
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
+from gearwear.diagnose.effects.each_tooth import EachTooth
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, make_side_maps, window_mean, worn_cells
@@ -56,7 +57,7 @@ def at_own_level(cells: Cells, noise: float, loop: Loop | None, worn: frozenset[
     The levels of both flanks of a tooth add up to its thickness, whatever its index. A further tooth of n whose thickness has the standard deviation s
     lies within ``t(n − 1) s √(1 + 1/n)`` of their mean (Student), up as well as down; within that the level of a flank tells nothing of wear.
     """
-    if loop is None or not any(effect.candidate.effect.tooth_specific for effect in loop.effects):
+    if loop is None or not any(isinstance(effect.candidate.effect, EachTooth) for effect in loop.effects):
         return cells, 0.0
     sheets = make_side_maps(cells)
     local, number = window_mean(sheets)

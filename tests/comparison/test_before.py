@@ -106,7 +106,9 @@ def scans_of(lost, worn, noise=0.004):
     def seen(deviation):
         scatter = noise * rng.standard_normal(len(made)) / np.sqrt(np.maximum(cells.count, 1.0))
         corrected = cells.with_deviation(np.where(cells.seen, deviation + scatter, np.nan))
-        return SimpleNamespace(corrected=corrected, cells=cells, noise=noise, worn_sides=frozenset(worn), as_made=corrected)
+        return SimpleNamespace(
+            corrected=corrected, cells=cells, noise=noise, worn_sides=frozenset(worn), as_made=corrected, loop=None
+        )
 
     return seen(made + measured - lost(on)), seen(made), cells
 

@@ -1,6 +1,6 @@
 """Scans made from nothing but the drawing: the truth for tests and studies, sharing no code with gearwear."""
 
-from tests.synthetic.effects import OUTSIDE, PARAMETERS, Effect
+from tests.synthetic.effects import BENT, OUTSIDE, PARAMETERS, Effect
 from tests.synthetic.outline import PINION, WHEEL, GearNumbers, Outline, Surface
 from tests.synthetic.pose import PoseError, Rigid, pose_error, rotation_about
 from tests.synthetic.recipe import FlankTruth, Hole, Labels, Recipe, SyntheticScan, Truth, Views
@@ -9,6 +9,7 @@ from tests.synthetic.scan import make_scan
 from tests.synthetic.texture import Texture
 
 __all__ = [
+    "BENT",
     "OUTSIDE",
     "PARAMETERS",
     "PINION",

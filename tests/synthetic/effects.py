@@ -88,6 +88,8 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "stitch_step": ("step_um", "z_mm"),
     "flank_ripple": ("amplitude_um", "wavelength_mm", "phase_deg"),
     "pitch_ridge": ("height_um", "width_mm"),
+    "bend": ("tooth", "tip_um", "power"),
+    "hinge": ("tooth", "tip_um"),
 }
 OUTSIDE = ("wave_growing", "helical_scratch", "stitch_step", "flank_ripple", "pitch_ridge")
 """Names no catalogue has.
@@ -97,6 +99,12 @@ helical_scratch: a groove across both flanks of a tooth (0-based), δ = −d exp
 stitch_step: every radius above z grows by the step.
 flank_ripple: δ = a cos(2π L / λ + φ) on all left flanks.
 pitch_ridge: δ = h exp(−½ ((L − L_ref) / w)²) on all left flanks, metal that plastic flow moved to the pitch line.
+"""
+BENT = ("bend", "hinge")
+"""One tooth (0-based) that an overload bent, + counter-clockwise, both flanks of it alike; of the catalogue's `bent_tooth` examples.
+
+bend: δ = s d v^p, v from 0 at the form circle to 1 at the tip.
+hinge: the tooth turns about the point of its middle line on the root circle, by as much as moves its flanks by d at the tip.
 """
 
 
@@ -164,6 +172,20 @@ def _scratch(e: Effect, o: Outline, f: Feet) -> Floats:
     return -e["depth_um"] * (f.tooth == e["tooth"]) * np.exp(-0.5 * (across / e["width_mm"]) ** 2)
 
 
+def _bend(e: Effect, o: Outline, f: Feet) -> Floats:
+    up = np.clip(0.5 * (1.0 + _u(o, f)), 0.0, None)
+    return f.side * e["tip_um"] * np.where(f.tooth == e["tooth"], up ** e["power"], 0.0)
+
+
+def _hinge(e: Effect, o: Outline, f: Feet) -> Floats:
+    """Lever of the normal about the hinge: r_b − r_f cos φ, φ where the normal's foot lies on the base circle."""
+
+    def lever(roll: Floats | float) -> Floats:
+        return np.asarray(o.base_radius - o.root_radius * np.cos(o.base_half_angle - np.asarray(roll) / o.base_radius))
+
+    return f.side * e["tip_um"] * np.where(f.tooth == e["tooth"], lever(f.roll) / lever(o.tip_roll), 0.0)
+
+
 TURNS: dict[str, Callable[[Effect, Outline, Feet], Floats]] = {
     "tooth_thickness": lambda e, o, f: f.side * 0.5e-3 * e["thickness_um"] / o.reference_radius,
     "pitch": _pitch,
@@ -182,6 +204,8 @@ SHIFTS: dict[str, Callable[[Effect, Outline, Feet], Floats]] = {
     "wave_growing": _growing,
     "helical_scratch": _scratch,
     "flank_ripple": lambda e, o, f: (f.side > 0) * _wave(f.roll, e),
+    "bend": _bend,
+    "hinge": _hinge,
     "pitch_ridge": lambda e, o, f: (
         (f.side > 0) * e["height_um"] * np.exp(-0.5 * ((f.roll - o.reference_roll) / e["width_mm"]) ** 2)
     ),

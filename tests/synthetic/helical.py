@@ -7,7 +7,7 @@ one: each of its points cuts when its normal passes through the pitch point. Wea
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +65,7 @@ def scan(
     added: Callable[[Floats, Floats, Floats], Floats] | None = None,
     coat: float = 0.0,
     faces: bool = True,
+    bent: Mapping[int, float] | None = None,
 ) -> Cloud:
     """A scan.
 
@@ -82,6 +83,9 @@ def scan(
         On every surface, along its normal.
     faces : bool
         Whether the end faces are in it.
+    bent : mapping of int to float, or None
+        By tooth how far it was bent at its tip, along the transverse base tangent, + counter-clockwise: from nothing at the form circle as the square of the
+        way.
     """
     rng = np.random.default_rng(seed)
     fillet_r, fillet_half = gear.fillet()
@@ -106,6 +110,8 @@ def scan(
             lever = np.full(n, gear.base)
             if added is not None:
                 off += added(side, roll, z) * gear.base_cos
+            moved = np.array([(bent or {}).get(int(one), 0.0) for one in tooth])
+            off += side * moved * ((roll - low) / (high - low)) ** 2 * gear.base_cos
             for patch in wear:
                 off -= np.where((tooth == patch.tooth) & (side == patch.side), patch.at(roll, z), 0.0)
         elif name == "fillet":

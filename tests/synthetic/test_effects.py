@@ -51,6 +51,14 @@ class Flank:
         self.label = labels.deviation[on] * 1e3
 
 
+def turned_by_one(roll):
+    """What the normal of a left flank at a roll takes of a turn about the middle of the tooth where it leaves the root circle: lever × normal."""
+    across = OUTLINE.base_half_angle - roll / RB
+    x = RB * np.cos(across) - roll * np.sin(across) - OUTLINE.root_radius
+    y = RB * np.sin(across) + roll * np.cos(across)
+    return x * np.cos(across) + y * np.sin(across)
+
+
 INDEX = tuple(float(x) for x in 30.0 * np.cos(np.arange(12) * 1.7) - 30.0 * np.mean(np.cos(np.arange(12) * 1.7)))
 COS20 = math.cos(math.radians(20.0))
 # effect -> what the contract or the reference says the flank's deviation is (µm), and its second order (µm)
@@ -136,6 +144,16 @@ FLANK = {
     "pitch_ridge": (
         {"height_um": 15.0, "width_mm": 1.2},
         lambda f: 15.0 * (f.side > 0) * np.exp(-((f.roll - OUTLINE.reference_roll) ** 2) / 2.88),
+        1e-9,
+    ),
+    "bend": (
+        {"tooth": 3, "tip_um": -40.0, "power": 2.0},
+        lambda f: -40.0 * f.side * (f.tooth == 3) * ((f.roll - OUTLINE.form_roll) / (OUTLINE.tip_roll - OUTLINE.form_roll)) ** 2,
+        1e-9,
+    ),
+    "hinge": (
+        {"tooth": 3, "tip_um": 40.0},
+        lambda f: 40.0 * f.side * (f.tooth == 3) * turned_by_one(f.roll) / turned_by_one(OUTLINE.tip_roll),
         1e-9,
     ),
 }

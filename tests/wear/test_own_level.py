@@ -10,6 +10,7 @@ from scipy import stats
 from gearwear.design.side import Side
 from gearwear.design.surface import locate
 from gearwear.diagnose.active_face import ActiveFace
+from gearwear.diagnose.effects.pitch import EFFECT as PITCH
 from gearwear.diagnose.made_height import MadeHeight
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import make_side_maps
@@ -24,7 +25,7 @@ SURE = 4.0
 WORN = (5, 1)
 SCATTER = 0.0015
 """mm; of the levels that teeth without wear have on both flanks: half of their thickness errors."""
-INDEXED = SimpleNamespace(effects=(SimpleNamespace(candidate=SimpleNamespace(effect=SimpleNamespace(tooth_specific=True))),))
+INDEXED = SimpleNamespace(effects=(SimpleNamespace(candidate=SimpleNamespace(effect=PITCH)),))
 
 
 def levelled(own, seed=7):

@@ -20,6 +20,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
 from gearwear.design.twist import helix_coordinate
 from gearwear.diagnose.active_face import ActiveFace
+from gearwear.diagnose.bent_teeth import Bent
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.parameter import ParameterEstimate as ParameterEstimate
 
@@ -87,6 +88,8 @@ class Context:
         Sides worn where their mate ran, whose flanks beside it are as made and are not left out.
     absent : frozenset of int
         Teeth that are missing or were not seen: what each tooth has of its own is not known of these.
+    bent : tuple of Bent
+        Teeth that an overload has bent.
     views_apart : float
         How far views that may have been put together in the scan, and do not quite lie on each other, lie from their mean, mm; 0 where none do.
     smoothed : bool
@@ -110,6 +113,7 @@ class Context:
     worn: frozenset[Side] = frozenset()
     faces: tuple[ActiveFace, ...] = ()
     absent: frozenset[int] = frozenset()
+    bent: tuple[Bent, ...] = ()
     views_apart: float = 0.0
     smoothed: bool = False
     pitch: float | None = None

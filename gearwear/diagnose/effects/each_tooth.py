@@ -24,6 +24,11 @@ class EachTooth(CatalogueEffect):
     kind: ClassVar[Kind] = Kind.MANUFACTURE
     tooth_specific: ClassVar[bool] = True
 
+    def teeth(self, context: Context) -> list[int]:
+        """Teeth that have an amount: two of them at least, or all."""
+        present = [tooth for tooth in range(context.gear.teeth) if tooth not in context.absent]
+        return present if len(present) > 1 else list(range(context.gear.teeth))
+
     def shapes(self, context: Context) -> list[Shape]:
         return [(0.0,), (1.0,)]
 
@@ -33,7 +38,7 @@ class EachTooth(CatalogueEffect):
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         # Tooth by tooth, so that one whose amplitude is unknown (nan) leaves the others known.
         value, std = np.full((2, context.gear.teeth), np.nan)
-        present = teeth_with_amounts(context)
+        present = self.teeth(context)
         value[present] = [*amplitudes, -amplitudes.sum()]
         std[present] = np.sqrt(np.maximum([*np.diag(covariance), covariance.sum()], 0.0))
         (amount,) = self.parameters
@@ -42,21 +47,15 @@ class EachTooth(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         own = np.zeros((len(points), context.gear.teeth))
         own[np.arange(len(points)), points.tooth] = self.deviation(points, context, shape)
-        *others, last = teeth_with_amounts(context)
+        *others, last = self.teeth(context)
         return own[:, others] - own[:, [last]]
 
     def amounts(self, amplitudes: Floats, context: Context) -> Floats:
         """Of each tooth, (teeth,), from the amplitudes; 0 of one that has none."""
         result = np.zeros(context.gear.teeth)
-        result[teeth_with_amounts(context)] = [*amplitudes, -amplitudes.sum()]
+        result[self.teeth(context)] = [*amplitudes, -amplitudes.sum()]
         return result
 
     def deviation(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         """Of points (n,) for an amount of 1 on their tooth."""
         raise NotImplementedError
-
-
-def teeth_with_amounts(context: Context) -> list[int]:
-    """Teeth that have an amount: two of them at least, or all."""
-    present = [tooth for tooth in range(context.gear.teeth) if tooth not in context.absent]
-    return present if len(present) > 1 else list(range(context.gear.teeth))

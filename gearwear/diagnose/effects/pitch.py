@@ -32,6 +32,10 @@ class Pitch(EachTooth):
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("index_um"),)
     phrase: ClassVar[str] = "pitch errors, tooth by tooth, of {index_um}"
 
+    def teeth(self, context: Context) -> list[int]:
+        bent = {one.tooth for one in context.bent}  # where these stand their bend says
+        return [tooth for tooth in super().teeth(context) if tooth not in bent]
+
     def deviation(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear
         return np.asarray(gear.base_radius / gear.reference_radius * side_cut(points, gear, shape[0]))
