@@ -80,7 +80,8 @@ def test_every_effect_of_the_catalogue_has_words_that_hold_its_size(effect):
 @pytest.mark.parametrize("effect", [one for one in catalogue() if one.phrase_below], ids=lambda effect: effect.name)
 def test_words_of_a_signed_effect_follow_its_sign(effect):
     parameter = effect.parameters[0]
-    size = {sign: {parameter.name: ParameterEstimate(sign * 5.0, 1.0, parameter.unit)} for sign in (1, -1)}
+    others = {} if effect.phrase_of_sides else parameters_of(effect)
+    size = {sign: others | {parameter.name: ParameterEstimate(sign * 5.0, 1.0, parameter.unit)} for sign in (1, -1)}
     words = {sign: spoken(effect_words(effect.name, item)) for sign, item in size.items()}
     assert words[1] != words[-1]
     assert all("5 ± 1" in text or "5.0 ± 1.0" in text for text in words.values())
