@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 
 from gearwear.diagnose.effects.coating_variation import EFFECT
@@ -19,11 +17,6 @@ def displace(sample, parameters, shape):
     d = np.radians(parameters["direction_deg"])
     towards = (x * np.cos(d) + y * np.sin(d)) / np.hypot(x, y)
     return sample.pushed(1e-3 * parameters["amplitude_um"] * towards)
-
-
-def test_a_section_was_not_sprayed():
-    assert EFFECT.applies(context())
-    assert not EFFECT.applies(replace(context(), planar=True))
 
 
 def test_a_translation_takes_the_part_of_the_normals_along_the_radius_alone():

@@ -35,9 +35,6 @@ class CoatingVariation(WaveEffect):
     turns: ClassVar[float] = -1.0
     phrase: ClassVar[str] = "a coat {amplitude_um} thicker towards {direction_deg} than in the mean"
 
-    def applies(self, context: Context) -> bool:
-        return not context.planar  # a section was not sprayed
-
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         angle = polar_angle(points)
         return np.column_stack([np.cos(angle), np.sin(angle)])
