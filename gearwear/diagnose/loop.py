@@ -351,7 +351,7 @@ def _explained(searched: Searched, noise: float, always: frozenset[str], known: 
         problem = fit.problem(problem.unit, context, always)
     whole = replace(fit, target=fit.target + _sum(known, len(target)))
     loop = account(whole, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise)
-    unsized = {effect.name for effect in loop.effects if not effect.is_sized} - always
+    unsized = {effect.name for effect in loop.effects if not effect.is_sized}
     if unsized:  # with all that its ± holds it may be nothing: no cause
         still = tuple(c for c in stood.model if c.name not in unsized)
         stood = eliminate(fit, problem, still, noise, _unlike(stood.patterns))
