@@ -88,7 +88,7 @@ MUTATIONS = [
         ("diagnose/elimination.py", "along_face(fit.cells.grid, pattern) if as_cut else pattern.rms", "pattern.rms", "diagnose/core/test_elimination.py"),
         ("diagnose/elimination.py", "along_face(fit.cells.grid, pattern) if as_cut else pattern.rms", "along_face(fit.cells.grid, pattern)", "diagnose/core/test_elimination.py"),
         ("diagnose/among_orders.py", "/ (beside / count)", "/ beside", "diagnose/core/test_among_orders.py"),
-        ("diagnose/among_orders.py", "return 0.0\n    ratio", "pass\n    ratio", "diagnose/core/test_among_orders.py"),
+        ("diagnose/among_orders.py", "return 0.0\n    return float(fdtrc", "pass\n    return float(fdtrc", "diagnose/core/test_among_orders.py"),
         ("diagnose/among_orders.py", "if not all_teeth_seen(fit.cells.grid, fit.use):", "if False:", "diagnose/core/test_among_orders.py"),
         ("diagnose/elimination.py", "hidden_among_orders(waves, problem, model) if worst is None else worst", "worst", "diagnose/core/test_among_orders.py"),
         ("diagnose/fit.py", "as_cut = self.is_cut_along_face(model[index], field)", "as_cut = False", "diagnose/core/test_fit.py"),

@@ -46,7 +46,6 @@ NUMERICAL = {
     "FORM_GROUP",
     "FRAMES",
     "HIGHEST_ORDER",
-    "HIGHEST_NEIGHBOUR",
     "LEAST",
     "LEAST_ORDER",
     "LEAST_ROWS",

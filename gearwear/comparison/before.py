@@ -65,9 +65,10 @@ def what_changed(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
 def _bent(measured: MeasuredGear) -> Floats:
     """What teeth that an overload bent do to the deviation of each cell, (m,) mm: metal that was moved and not lost."""
     cells, loop, result = measured.cells, measured.loop, np.zeros(len(measured.cells.count))
-    for effect in () if loop is None else loop.effects:
-        if effect.name == BENT_TOOTH and loop is not None:
-            result[cells.seen] += loop.of_effect(effect, cells.points.take(cells.seen))
+    if loop is not None:
+        points = cells.points.take(cells.seen)
+        bent = (loop.of_effect(effect, points) for effect in loop.effects if effect.name == BENT_TOOTH)
+        result[cells.seen] = sum(bent, np.zeros(len(points)))
     return result
 
 

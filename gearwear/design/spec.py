@@ -213,13 +213,11 @@ class GearSpec:
             ("gauge", DrawnGauge | None, "a DrawnGauge or None"),
         ):
             check_kind(getattr(self, label), kind, f"[{self.name}] {label}", right)
-        for label, pairs in (("modified_between", (self.modified_between,)), ("ends_seen", self.ends_seen)):
-            for pair in (
-                ()
-                if getattr(self, label) is None
-                else check_several(f"[{self.name}] {label}", pairs, "two pairs of lengths in mm")
-            ):
-                two_numbers(f"[{self.name}] {label}", pair, "two lengths in mm")
+        if self.modified_between is not None:
+            two_numbers(f"[{self.name}] modified_between", self.modified_between, "two lengths in mm")
+        if self.ends_seen is not None:
+            for pair in check_several(f"[{self.name}] ends_seen", self.ends_seen, "two pairs of lengths in mm"):
+                two_numbers(f"[{self.name}] ends_seen", pair, "two lengths in mm")
 
     def _check_protuberance(self) -> None:
         """The tool of a root that the finished flank cuts."""

@@ -6,20 +6,24 @@ scanner's scale or a wobble, and would give it to what such a form has of them.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from scipy.special import chdtri, fdtrc
 
 from gearwear.arrays import Floats
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit, Model
-from gearwear.diagnose.own_waves import LEAST_ORDER, all_teeth_seen, height_of, order_of, turned_to
+from gearwear.diagnose.own_waves import (
+    HIGHEST_ORDER,
+    LEAST_ORDER,
+    NEIGHBOURS,
+    all_teeth_seen,
+    height_of,
+    order_of,
+    orders_beside,
+    turned_to,
+)
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
-
-HIGHEST_NEIGHBOUR = 6
-"""Order up to which a form is looked for: two above the highest that an effect is looked at for (`own_waves.HIGHEST_ORDER`)."""
 
 
 def hidden_among_orders(fit: Fit, problem: Problem, model: Model) -> int | None:
@@ -56,7 +60,7 @@ def hidden_among_orders(fit: Fit, problem: Problem, model: Model) -> int | None:
 def _by_chance(fit: Fit, problem: Problem, columns: Floats, part: slice, field: Floats, order: int) -> float:
     """Probability that an effect of an order with its neighbours' power explains as much as one does."""
     grid = fit.cells.grid
-    orders = [k for k in range(LEAST_ORDER, HIGHEST_NEIGHBOUR + 1) if k != order and 2 * k < grid.gear.teeth]
+    orders = orders_beside(grid, order, LEAST_ORDER, HIGHEST_ORDER + NEIGHBOURS)
     if not orders:
         return 0.0
     height = height_of(grid, field, order)
@@ -69,5 +73,4 @@ def _by_chance(fit: Fit, problem: Problem, columns: Floats, part: slice, field: 
     count = 2 * len(orders)
     if beside < float(chdtri(count, rules().significance)):
         return 0.0
-    ratio = gain / problem.unit / len(own) / (beside / count)
-    return float(fdtrc(len(own), count, ratio)) if math.isfinite(ratio) else 1.0
+    return float(fdtrc(len(own), count, gain / problem.unit / len(own) / (beside / count)))

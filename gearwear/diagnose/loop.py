@@ -22,7 +22,8 @@ from gearwear.diagnose.dictionary import Candidate, Dictionary, build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
-from gearwear.diagnose.effects.bent_tooth import BENT_TOOTH, BentTooth
+from gearwear.diagnose.effects.bent_tooth import BENT_TOOTH
+from gearwear.diagnose.effects.bent_tooth import EFFECT as BEND
 from gearwear.diagnose.effects.edge_rounding import EDGE_ROUNDING
 from gearwear.diagnose.effects.face_level import FACE_LEVEL
 from gearwear.diagnose.effects.root_form import ROOT_FORM
@@ -366,7 +367,7 @@ def _unexplained(fit: Fit, context: Context) -> Floats:
     if not context.bent:
         return fit.pose_residual()
     seen, moved = fit.cells.seen, np.zeros(len(fit.target))
-    moved[seen] = BentTooth().first_look(fit.cells.points.take(seen), context)
+    moved[seen] = BEND.first_look(fit.cells.points.take(seen), context)
     return replace(fit, target=fit.target - moved).pose_residual()
 
 

@@ -34,13 +34,16 @@ def neighbouring_waves(grid: CellGrid, residual: Floats, use: Bools, order: int)
 
     Nothing where a tooth was not seen, for of a part of the gear no order is known by itself, or where there is one neighbour alone.
     """
-    orders = [
-        k for k in range(max(order - NEIGHBOURS, LEAST_ORDER), order + NEIGHBOURS + 1) if k != order and 2 * k < grid.gear.teeth
-    ]
+    orders = orders_beside(grid, order, order - NEIGHBOURS, order + NEIGHBOURS)
     if len(orders) < 2 or not all_teeth_seen(grid, use):
         return np.zeros((len(residual), 0))
     seen = np.where(use, residual, 0.0)
     return np.hstack([turned_to(grid, height_of(grid, seen, k), order) for k in orders])
+
+
+def orders_beside(grid: CellGrid, order: int, lowest: int, highest: int) -> list[int]:
+    """Orders other than one, from the lowest that the pose leaves to the highest that the teeth tell apart."""
+    return [k for k in range(max(lowest, LEAST_ORDER), highest + 1) if k != order and 2 * k < grid.gear.teeth]
 
 
 def all_teeth_seen(grid: CellGrid, use: Bools) -> bool:
