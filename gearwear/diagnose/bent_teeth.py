@@ -31,10 +31,13 @@ class Bent:
     moved : (float, float, float)
         By how much its flanks moved at the tip, in the middle and at the form circle, mm, + counter-clockwise: as the flank that stands proud has it, at a
         first look.
+    lean : (float, float, float)
+        By how much more, at each of these, at the upper end of the face than at the lower, mm.
     """
 
     tooth: int
     moved: tuple[float, float, float]
+    lean: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 def bent_teeth(cells: Cells) -> tuple[Bent, ...]:
@@ -55,7 +58,8 @@ def bent_teeth(cells: Cells) -> tuple[Bent, ...]:
     - its upper half stands proud by more than half of that: a flank worn at its foot rises to where it was,
     - and the other flank falls by more than half of it: metal that one flank has more of than others, as cut, the other does not miss.
     """
-    profile, up = _profiles(cells)
+    heights, along, up = _heights(cells)
+    profile = _medians(heights, axis=2)
     below = up < 0.75
     rise = _slopes(profile[..., below], up[below])
     known = np.isfinite(rise).all(axis=1)
@@ -75,29 +79,41 @@ def bent_teeth(cells: Cells) -> tuple[Bent, ...]:
         proud = (own > far) & (height[:, side.index] > share * there * own)
         bent = beyond & proud & (-other > share * own)
         for tooth in np.flatnonzero(bent).tolist():
-            at = np.isfinite(profile[tooth, side.index])
-            curve = np.polynomial.Polynomial.fit(up[at], profile[tooth, side.index, at], 2)
-            tip, middle, form = (int(side) * float(curve(place)) for place in (1.0, 0.5, 0.0))
-            found.append(Bent(tooth, (tip, middle, form)))
+            flank = heights[tooth, side.index]
+            lean = _slopes(flank.T, along) if len(along) > 1 else np.zeros(len(up))
+            middle = _medians(flank - (along[:, None] - 0.5) * lean, axis=0)
+            found.append(Bent(tooth, _along_profile(up, int(side) * middle), _along_profile(up, int(side) * lean)))
     return tuple(sorted(found, key=lambda one: one.tooth))
 
 
-def _profiles(cells: Cells) -> tuple[Floats, Floats]:
-    """Height of each flank along its profile about what its side has, (teeth, 2, columns) mm, nan where it was not seen, or most of the flank was not; and how
-    far up from the form circle (0) to the tip (1) the columns lie."""
+def _heights(cells: Cells) -> tuple[Floats, Floats, Floats]:
+    """Height of each flank about what its side has, (teeth, 2, rows, columns) mm, nan where it was not seen, or most of the flank was not; how far along
+    the face, from its lower end (0) to the upper (1), the rows lie, and how far up from the form circle (0) to the tip (1) the columns."""
     grid, gear = cells.grid, cells.grid.gear
     seen = grid.flank_shape(cells.seen)
     heights = np.where(seen, grid.flank_shape(cells.points.deviation), np.nan)
     often = seen.mean(axis=(2, 3)) > rules().known_flank
+    up = (grid.column_middles - gear.form_roll) / (gear.tip_roll - gear.form_roll)
+    off = heights - _medians(heights, axis=0)
+    return np.where(often[:, :, None, None], off, np.nan), grid.row_middles / gear.face_width, up
+
+
+def _medians(values: Floats, axis: int) -> Floats:
+    """Medians along an axis of what is known, nan where nothing is."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
-        profile = np.nanmedian(heights - np.nanmedian(heights, axis=0), axis=2)
-    up = (grid.column_middles - gear.form_roll) / (gear.tip_roll - gear.form_roll)
-    return np.where(often[:, :, None], profile, np.nan), up
+        return np.asarray(np.nanmedian(values, axis=axis))
+
+
+def _along_profile(up: Floats, values: Floats) -> tuple[float, float, float]:
+    """What the parabola through values (columns,) has at the tip, in the middle and at the form circle."""
+    at = np.isfinite(values)
+    curve = np.polynomial.Polynomial.fit(up[at], values[at], 2)
+    return float(curve(1.0)), float(curve(0.5)), float(curve(0.0))
 
 
 def _slopes(profile: Floats, up: Floats) -> Floats:
-    """Rise of each profile from the form circle to the tip, (teeth, 2) mm: the median over the pairs of its columns; nan where none are known."""
+    """Rise of each profile (…, columns) from the form circle to the tip, mm: the median over the pairs of its columns; nan where none are known."""
     first, second = np.triu_indices(len(up), 1)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # flanks nobody saw

@@ -137,7 +137,13 @@ def close_loop(
         if len(waves) == len(known) or any(pattern.is_form(noise) for pattern in loop.patterns):
             break
         known, (loop, finished) = waves, closed(waves)
-    return finished()
+    result = finished()
+    told = {round(one.candidate.shape[0]) - 1 for one in (*result.form, *result.effects) if one.name == BENT_TOOTH}
+    bent = tuple(one for one in result.context.bent if one.tooth in told)
+    if bent == result.context.bent:
+        return result
+    # A tooth that is none of these has an index like the others, and its flanks may be worn.
+    return close_loop(cells, noise, replace(context, bent=bent), effects, root_free, worn, out, begun, ruled_out, look, in_space)
 
 
 def _closed(

@@ -61,6 +61,29 @@ def test_by_itself_it_is_named_and_nothing_is_worn(tmp_path, effect, plain):
     assert abs(tooth.greatest_loss) < 3.0 * tooth.loss_std
 
 
+@pytest.mark.long
+def test_two_beside_each_other_are_both_told(tmp_path):
+    two = [Effect("bend", {"tooth": TOOTH + i, "tip_um": tip, "power": 1.5}) for i, tip in enumerate((40.0, 60.0))]
+    found, _ = results(tmp_path, *two, plain=False)
+    told = {int(one.parameters["number"].value): one.parameters["tip_um"] for one in found.measured.loop.effects}
+    assert set(told) == {TOOTH + 1, TOOTH + 2}
+    for number, true in ((TOOTH + 1, 40.0), (TOOTH + 2, 60.0)):
+        assert abs(told[number].value - true) < 3.0 * told[number].std < 6.0
+    assert found.wear.regions == ()
+
+
+@pytest.mark.parametrize("plain", [True, pytest.param(False, marks=pytest.mark.long)])
+def test_one_that_bent_more_at_one_end_lost_nothing_there(tmp_path, plain):
+    """Sixty micrometres at the upper end and none at the lower."""
+    found, _ = results(tmp_path, Effect("bend_at_end", {"tooth": TOOTH, "tip_um": 30.0, "power": 1.0}), plain=plain)
+    (one,) = found.measured.loop.effects
+    assert one.name == "bent_tooth"
+    tip, lean = one.parameters["tip_um"], one.parameters["tip_lean_um"]
+    assert abs(tip.value - 30.0) < 3.0 * tip.std < 3.0
+    assert abs(lean.value - 60.0) < 3.0 * lean.std < 9.0
+    assert found.wear.regions == () and found.wear.found.volume == 0.0
+
+
 @pytest.mark.parametrize("seed", [3, pytest.param(4, marks=pytest.mark.long), pytest.param(5, marks=pytest.mark.long)])
 def test_wear_of_the_flank_that_lies_low_is_what_was_taken(tmp_path, seed):
     found, truth = results(tmp_path, bent(40.0), wear=(LOW,), seed=seed)

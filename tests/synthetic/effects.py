@@ -89,6 +89,7 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "flank_ripple": ("amplitude_um", "wavelength_mm", "phase_deg"),
     "pitch_ridge": ("height_um", "width_mm"),
     "bend": ("tooth", "tip_um", "power"),
+    "bend_at_end": ("tooth", "tip_um", "power"),
     "hinge": ("tooth", "tip_um"),
 }
 OUTSIDE = ("wave_growing", "helical_scratch", "stitch_step", "flank_ripple", "pitch_ridge")
@@ -100,10 +101,11 @@ stitch_step: every radius above z grows by the step.
 flank_ripple: δ = a cos(2π L / λ + φ) on all left flanks.
 pitch_ridge: δ = h exp(−½ ((L − L_ref) / w)²) on all left flanks, metal that plastic flow moved to the pitch line.
 """
-BENT = ("bend", "hinge")
+BENT = ("bend", "bend_at_end", "hinge")
 """One tooth (0-based) that an overload bent, + counter-clockwise, both flanks of it alike; of the catalogue's `bent_tooth` examples.
 
 bend: δ = s d v^p, v from 0 at the form circle to 1 at the tip.
+bend_at_end: twice that at the upper end, and evenly down to nothing at the lower.
 hinge: the tooth turns about the point of its middle line on the root circle, by as much as moves its flanks by d at the tip.
 """
 
@@ -177,6 +179,10 @@ def _bend(e: Effect, o: Outline, f: Feet) -> Floats:
     return f.side * e["tip_um"] * np.where(f.tooth == e["tooth"], up ** e["power"], 0.0)
 
 
+def _bend_at_end(e: Effect, o: Outline, f: Feet) -> Floats:
+    return _bend(e, o, f) * (1.0 + 2.0 * _zeta(o, f))
+
+
 def _hinge(e: Effect, o: Outline, f: Feet) -> Floats:
     """Lever of the normal about the hinge: r_b − r_f cos φ, φ where the normal's foot lies on the base circle."""
 
@@ -205,6 +211,7 @@ SHIFTS: dict[str, Callable[[Effect, Outline, Feet], Floats]] = {
     "helical_scratch": _scratch,
     "flank_ripple": lambda e, o, f: (f.side > 0) * _wave(f.roll, e),
     "bend": _bend,
+    "bend_at_end": _bend_at_end,
     "hinge": _hinge,
     "pitch_ridge": lambda e, o, f: (
         (f.side > 0) * e["height_um"] * np.exp(-0.5 * ((f.roll - o.reference_roll) / e["width_mm"]) ** 2)

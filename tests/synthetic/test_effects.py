@@ -151,6 +151,19 @@ FLANK = {
         lambda f: -40.0 * f.side * (f.tooth == 3) * ((f.roll - OUTLINE.form_roll) / (OUTLINE.tip_roll - OUTLINE.form_roll)) ** 2,
         1e-9,
     ),
+    "bend_at_end": (
+        {"tooth": 3, "tip_um": -40.0, "power": 1.0},
+        lambda f: (
+            -80.0
+            * f.side
+            * (f.tooth == 3)
+            * (f.roll - OUTLINE.form_roll)
+            / (OUTLINE.tip_roll - OUTLINE.form_roll)
+            * f.z
+            / OUTLINE.face_width
+        ),
+        1e-9,
+    ),
     "hinge": (
         {"tooth": 3, "tip_um": 40.0},
         lambda f: 40.0 * f.side * (f.tooth == 3) * turned_by_one(f.roll) / turned_by_one(OUTLINE.tip_roll),

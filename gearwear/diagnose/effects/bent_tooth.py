@@ -18,19 +18,21 @@ BENT_TOOTH = "bent_tooth"
 
 @dataclass(frozen=True)
 class BentTooth(CatalogueEffect):
-    """δ = s d on the flanks of one tooth, d the parabola through what they moved by at the tip, in the middle of the roll and at the form circle; +
-    counter-clockwise.
+    """δ = s d on the flanks of one tooth, d the parabola through what they moved by at the tip, in the middle of the roll and at the form circle; each of
+    these changes evenly along the face; + counter-clockwise.
 
     Notes
     -----
     An overload that bends a tooth for good moves its metal and takes none off: one flank lies low by what the other stands proud, and the tooth is as thick
-    as it was. A tooth that turns about its root moves at the form circle too; what it was off its place before is in that, and it has no index of its own
+    as it was. Where the load lay at one end, that end bent more. A tooth that turns about its root moves at the form circle too; what it was off its place before is in that, and it has no index of its own
     (`pitch`). Which teeth are asked `bent_teeth` finds; the amounts are fitted with all else.
     """
 
     name: ClassVar[str] = BENT_TOOTH
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "own definition: rigid displacement of the flanks of one tooth, of second order in the roll length"
+    source: ClassVar[str] = (
+        "own definition: rigid displacement of the flanks of one tooth, of second order in the roll length, of first along the face"
+    )
     tells_apart: ClassVar[str] = (
         "Measure over pins or a span at that tooth: metal that was lost makes it thinner, a bend does not."
     )
@@ -39,6 +41,9 @@ class BentTooth(CatalogueEffect):
         Parameter("tip_um"),
         Parameter("middle_um"),
         Parameter("foot_um"),
+        Parameter("tip_lean_um"),
+        Parameter("middle_lean_um"),
+        Parameter("foot_lean_um"),
         Parameter("number", Role.PLACE, signed=False, spread=Spread.NONE),
     )
     phrase: ClassVar[str] = "tooth {number} bent counter-clockwise, by {tip_um} at its tip"
@@ -55,11 +60,13 @@ class BentTooth(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         up = 0.5 * (1.0 + profile_coordinate(points, context.gear))
         own = np.where(points.tooth == round(shape[0]) - 1, side_cut(points, context.gear, 0.0), 0.0)
-        return own[:, None] * np.column_stack([up * (2.0 * up - 1.0), 4.0 * up * (1.0 - up), (1.0 - up) * (1.0 - 2.0 * up)])
+        even = own[:, None] * np.column_stack([up * (2.0 * up - 1.0), 4.0 * up * (1.0 - up), (1.0 - up) * (1.0 - 2.0 * up)])
+        along = np.zeros(len(points)) if context.planar else points.position[:, 2] / context.gear.face_width - 0.5
+        return np.hstack([even, along[:, None] * even])
 
     def first_look(self, points: SurfacePoints, context: Context) -> Floats:
         """What the teeth bent as a first look has it do to the deviation of points, mm, (n,): so much is no wear, nor torn."""
-        found = (self.basis(points, context, (bent.tooth + 1.0,)) @ np.array(bent.moved) for bent in context.bent)
+        found = (self.basis(points, context, (bent.tooth + 1.0,)) @ np.array([*bent.moved, *bent.lean]) for bent in context.bent)
         return np.asarray(sum(found, np.zeros(len(points))), dtype=np.float64)
 
 

@@ -49,6 +49,20 @@ def test_a_bent_tooth_is_found_with_what_it_moved(tip, power, form):
     np.testing.assert_allclose(found.moved, (tip, middle, form), atol=0.004)
 
 
+@pytest.mark.parametrize(("tip", "lean"), [(0.05, 0.05), (-0.05, 0.08)])
+def test_what_it_moved_more_at_one_end_is_found_beside_a_pit(tip, lean):
+    """Of a flank that stands proud: a pit in it, 0.2 mm deep, moves no median."""
+
+    def leaning(t, side, up, zeta):
+        pit = np.where((side == np.sign(tip)) & (abs(zeta) < 0.05) & (up > 0.6), -0.2, 0.0)
+        return np.where(t == 4, side * up * (tip + lean * zeta) + pit, 0.0)
+
+    (found,) = bent_teeth(cells_with(leaning))
+    assert found.tooth == 4
+    np.testing.assert_allclose(found.moved, (tip, 0.5 * tip, 0.0), atol=0.006)
+    np.testing.assert_allclose(found.lean, (lean, 0.5 * lean, 0.0), atol=0.008)
+
+
 def test_two_of_them_are_found_and_none_on_a_gear_as_drawn():
     assert teeth(bend(4, 0.04), bend(9, -0.04)) == [4, 9]
     assert teeth() == []
