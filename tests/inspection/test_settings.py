@@ -72,6 +72,7 @@ OFF_THE_GEAR = [
     ({"control_roll": 40.0}, "from 40 to 26.3439 mm of roll is empty"),
     ({"profile_end": 1.0}, "from 3.05745 to 1 mm of roll is empty"),
     ({"control_roll": 40.0, "profile_end": 50.0}, "the involute goes from 3.058 to 26.343 mm"),
+    ({"helix_between": (-5.0, 100.0)}, "helix evaluation from -5 to 100 mm of height: the face goes from 0.000 to 15.000 mm"),
     ({"helix_between": (20.0, 30.0)}, "helix evaluation from 20 to 30 mm of height: the face goes from 0.000 to 15.000 mm"),
     ({"profile_band": (-2.0, -1.0)}, "band of the profile traces from -2 to -1 mm"),
     ({"pitch_band": (15.0, 16.0)}, "band of the pitch from 15 to 16 mm"),
