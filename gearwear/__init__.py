@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from gearwear.wear_law.forecast import forecast_wear as forecast_wear
     from gearwear.wear_law.study import Ahead as Ahead
 
-__version__ = "0.37.0"
+__version__ = "0.38.0"
 
 _HOME = {
     "Gear": "design.gear", "Design": "design.pair", "GearSpec": "design.spec", "InputError": "errors",

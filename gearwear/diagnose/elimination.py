@@ -17,6 +17,7 @@ from gearwear.diagnose.masks import folds
 from gearwear.diagnose.pattern import Pattern, along_face, find_patterns, joined, order_share
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
+from gearwear.diagnose.taken_back import beside_pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +79,8 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
             if cancelled is not None:
                 model = cancelled
                 continue
+            worst = _taken_back_by_teeth(fit, problem, model, evidence, kept)
+        if worst is None and pieces_of is None:
             worst = _most_uneven(whole, problem, model)
             worst = hidden_among_orders(waves, problem, model) if worst is None else worst
         if worst is None:
@@ -130,6 +133,27 @@ def _without_cancelled(problem: Problem, model: Model, evidence: list[Evidence],
         left.append((math.sqrt(max(gain, 0.0) / weight) / max(evidence[i].size, 1e-12), without))
     least, without = min(left, key=lambda one: one[0])
     return without if least < rules().cancelled else None
+
+
+def _taken_back_by_teeth(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], kept: list[bool]) -> int | None:
+    """Of an effect and amounts of each tooth that take each other back the one that explains less of its size; None where there are no such.
+
+    Amounts of each tooth give back on its sides whatever goes round the gear, as views out of place, and leave of both a small form that is neither.
+    """
+    specific = np.array([one.effect.tooth_specific for one in model], dtype=np.bool_)
+    shared = ~specific & np.array([one.effect.kind is not Kind.FORM for one in model], dtype=np.bool_)
+    if not (specific.any() and shared.any()):
+        return None
+    amplitudes, _ = problem.gram.solve(problem.columns(model))
+    columns, weight = fit.columns(model), np.where(fit.use, fit.weight, 0.0)
+    fields = np.column_stack([columns[:, part] @ amplitudes[part] for part in fit.parts(model)])
+    fields = beside_pose(fields, fit.dictionary.take(fit.dictionary.pose), weight)
+    product = fields.T @ (weight[:, None] * fields)
+    given = product < (rules().left_of_it - 1.0) * np.diag(product)  # [i, j]: of j by i
+    pairs = given & given.T & specific[:, None] & shared
+    back = pairs.any(axis=0) | pairs.any(axis=1)
+    among = [i for i in np.flatnonzero(back).tolist() if not kept[i]]
+    return min(among, key=lambda i: evidence[i].contribution / evidence[i].size, default=None)
 
 
 def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:

@@ -137,6 +137,16 @@ def test_what_lies_off_by_the_same_everywhere_is_a_coat_though_the_drawing_leave
     assert {candidate.name for candidate in found.model} == named
 
 
+@pytest.mark.parametrize("specific", [True, False])
+def test_amounts_of_each_tooth_and_what_they_take_back_do_not_both_stand(specific):
+    """A wave of two round the gear, as two steps each twice its size one against the other: of each, two fifths are its own."""
+    step = np.where(AT.tooth < TEETH // 2, 1.0, -1.0) + 0.0 * U
+    wave = np.cos(2.0 * ANGLE) + 0.0 * U
+    pair = (Toy("view"), step), (Toy("each", tooth_specific=specific), step + 0.45 * np.sqrt(2.0) * wave)
+    assert (len(stood(0.004 * wave, *pair)[0]) < 2) == specific
+    assert len(stood(0.004 * (step + pair[1][1]), *pair)[0]) == 2  # the same two, one way round
+
+
 def test_two_that_add_both_stand():
     rest = U**3 - 0.6 * U
     assert stood(0.01 * U + 0.004 * rest, (Toy("one"), U), (Toy("other"), rest))[0] == {"one", "other"}
