@@ -482,6 +482,8 @@ MUTATIONS = [
         ("diagnose/bowed.py", "low**2 - variance", "low**2", "diagnose/core/test_bowed.py"),
         ("diagnose/bowed.py", "np.array([0.0, 0.0, 1.0, 0.0, 1.0])", "np.array([0.0, 0.0, 1.0, 0.0, 0.0])", "diagnose/core/test_bowed.py"),
         ("diagnose/found.py", "2.0 * bow_of_sound(", "0.0 * bow_of_sound(", "diagnose/core/test_bowed.py"),
+        ("wear/edges.py", "* (1.0 - 1e-9)) + 1", "* (1.0 - 1e-9))", "wear/test_edges.py"),
+        ("wear/edges.py", "max(int(MOST * rows / len(segments(grid.gear))), 1)", "rows", "wear/test_edges.py"),
         ("diagnose/taken_back.py", "rules().left_of_it * size", "0.0 * size", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", ".all(axis=0)", ".any(axis=0)", "diagnose/core/test_taken_back.py"),
         ("diagnose/taken_back.py", "(fewer := among(back)).sum() < back.sum()", "(fewer := back).sum() < back.sum()", "diagnose/core/test_taken_back.py"),

@@ -1,7 +1,7 @@
 """The edges of flanks: what is missing there alone is rounding, deburring or a nick, and no wear of the flank.
 
 Where flanks end is seen from all of them together: ends may be rounded, or cut askew, and a scan may stop short of them. What ISO 1328-1 leaves
-out of the helix evaluation at each end is the strip; a cell more belongs to it, as wear is looked for on means over three.
+out of the helix evaluation at each end is the strip; the cells that it reaches into and one more belong to it, as wear is looked for on means over three.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ from gearwear.placing.side_maps import SideMaps
 
 STRIP_SHARE = 0.05
 """Of the face width, at each end, but not more than a module: left out of the helix evaluation (ISO 1328-1)."""
+MOST = 0.25
+"""Share of the face, from each end, that edges are at most, where cells are large; but a row of cells."""
 COMMON = 0.5
 """Share of a side's flanks that must have been seen at a place for the flank to go on there."""
 
@@ -66,10 +68,12 @@ def end_zone(maps: SideMaps, cells: Cells) -> Bools:
     if rows == 1:
         return np.zeros_like(common)
     height = grid.row_height
-    reach = end_strip(grid.gear) + height
+    strip = math.ceil(end_strip(grid.gear) / height * (1.0 - 1e-9)) + 1
+    strip = min(strip, max(int(MOST * rows / len(segments(grid.gear))), 1))
+    reach = strip * height
     # By a point: that it takes more than one to count as seen makes what thins out fall off twice.
     touched = (grid.sides(cells.count) > 0.0).sum(axis=0)
-    common = _thinning_out(common, touched, math.ceil(reach / height))
+    common = _thinning_out(common, touched, strip)
     if grid.groove_rows:
         return _zones_of_halves(grid, common, reach)
     middle = (np.arange(rows) + 0.5)[:, None] * height

@@ -37,6 +37,19 @@ def test_a_scan_that_thins_out_along_the_face_ends_where_the_face_does(fewer):
     assert found[:, 0].all() and found[:, -1].mean() > 0.5
 
 
+@pytest.mark.parametrize(("cells", "rows"), [(1_000, 1), (4_000, 1), (6_000, 2), (50_000, 3)])
+def test_the_cells_that_the_strip_reaches_into_and_one_more_are_edges(cells, rows):
+    """On cells twice the strip's width and more the second was a flank's, and how an edge was rounded wear of it. Of few rows half of the face is left."""
+    cloud = scan(GEAR, 80_000, noise=0.004, seed=3)
+    grid = CellGrid.for_scan(DESIGN, cells)
+    binned = bin_points(locate((cloud.points - cloud.translation) @ cloud.rotation, DESIGN), grid)
+    found = end_zone(make_side_maps(binned), binned)[:, :, grid.fillet + 1 : -1]
+    assert (end_strip(DESIGN), DESIGN.face_width) == (0.9, 18.0)
+    assert grid.rows - 2 * rows >= grid.rows / 3
+    assert found[:, :rows].all() and found[:, grid.rows - rows :].all()
+    assert not found[:, rows : grid.rows - rows].any()
+
+
 @pytest.mark.parametrize("fewer", [1.0, 10.0])
 def test_a_scan_that_stops_short_ends_there(fewer):
     last = 13.0
