@@ -12,12 +12,17 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.diagnose.dictionary import cell_basis
-from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.effects.base import Context, Effect
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.parameter import Spread
 
 PITCHES, STEPS = 2, 24
 """How far on either hand a jump is tried, and in how many steps a pitch; numerical."""
+
+
+def has_jump(effect: Effect) -> bool:
+    """Whether a shape value of an effect is a place at which it jumps."""
+    return any(parameter.spread is Spread.JUMP for parameter in effect.parameters)
 
 
 def jump_deviations(fit: Fit, model: Model, index: int, unit: float, context: Context) -> Floats | None:
@@ -39,7 +44,7 @@ def jump_deviations(fit: Fit, model: Model, index: int, unit: float, context: Co
     ``exp(−χ² / 2)``, with χ² in units of what correlated noise gains. The mean square of the way from where it was found, and what lies within a cell.
     """
     candidate, part = model[index], fit.parts(model)[index]
-    if not any(parameter.spread is Spread.JUMP for parameter in candidate.effect.parameters):
+    if not has_jump(candidate.effect):
         return None
     pitch, cells = context.gear.pitch_angle, fit.cells
     way = pitch * np.arange(-PITCHES * STEPS, PITCHES * STEPS + 1) / STEPS

@@ -19,6 +19,7 @@ from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.parameter import Parameter
 from gearwear.diagnose.search import Problem
 from gearwear.placing.cells import CellGrid, Cells, _labels
 
@@ -35,6 +36,7 @@ class Toy:
     tooth_specific: bool = False
     kind: Kind = Kind.MANUFACTURE
     limit: float | None = None
+    parameters: tuple[Parameter, ...] = ()
 
     def tolerance(self, context):
         return self.limit
