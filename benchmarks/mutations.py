@@ -89,6 +89,7 @@ MUTATIONS = [
         ("diagnose/elimination.py", "along_face(fit.cells.grid, pattern) if as_cut else pattern.rms", "along_face(fit.cells.grid, pattern)", "diagnose/core/test_elimination.py"),
         ("diagnose/among_orders.py", "/ (beside / count)", "/ beside", "diagnose/core/test_among_orders.py"),
         ("diagnose/among_orders.py", "return 0.0\n    return float(fdtrc", "pass\n    return float(fdtrc", "diagnose/core/test_among_orders.py"),
+        ("diagnose/among_orders.py", "has_jump(candidate.effect))", "False)", "diagnose/core/test_among_orders.py"),
         ("diagnose/among_orders.py", "if not all_teeth_seen(fit.cells.grid, fit.use):", "if False:", "diagnose/core/test_among_orders.py"),
         ("diagnose/elimination.py", "pairs = given & given.T & specific[:, None] & shared", "pairs = given & given.T & shared[:, None] & shared", "diagnose/core/test_elimination.py"),
         ("diagnose/elimination.py", "(rules().left_of_it - 1.0) * np.diag(product)", "-1e3 * np.diag(product)", "diagnose/core/test_elimination.py"),

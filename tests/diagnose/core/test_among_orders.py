@@ -5,6 +5,7 @@ import pytest
 
 from gearwear.diagnose.among_orders import hidden_among_orders
 from gearwear.diagnose.elimination import eliminate
+from gearwear.diagnose.parameter import Spread, angular
 from tests.diagnose.core.toy import TEETH, Toy, fit_of, grid, sides_of
 
 NOISE, COUNT = 0.005, 20.0
@@ -40,6 +41,27 @@ def test_it_is_named_where_it_stands_out_of_the_orders_beside_it(others, stands)
     found = eliminate(fit, problem, model, NOISE)
     assert (len(found.model) == 1) == stands
     assert stands or 2 in {pattern.order for pattern in found.patterns}  # it is told as what it is: a wave without a name
+
+
+STEP = np.where((AT.tooth >= 2) & (AT.tooth < 7), SHAPE, 0.0)
+"""A sector of five teeth."""
+
+
+@pytest.mark.parametrize(
+    ("field", "stands"),
+    [
+        pytest.param(0.004 * STEP, True, id="a sector"),
+        pytest.param(0.004 * STEP + wave(0.0004, 2, 0.3), True, id="a sector on a gear that is no circle"),
+        pytest.param(wave(0.003, 2, 0.7) + wave(0.003, 1, 0.2), False, id="a form of two orders"),
+    ],
+)
+def test_a_jump_is_one_where_its_waves_belong_together(field, stands):
+    """A sector has waves of all orders, a form of few orders some of them alone."""
+    noise = NOISE / np.sqrt(COUNT) * np.random.default_rng(2).normal(size=AT.z.shape)
+    jumping = Toy("sector", parameters=(angular("start_deg", spread=Spread.JUMP),))
+    fit = fit_of(grid(), field + noise, [(jumping, STEP[..., None])], NOISE, COUNT, turns=True)
+    problem, model = fit.problem(1.0, None), fit.dictionary.candidates
+    assert (hidden_among_orders(fit, problem, model) is None) == stands
 
 
 @pytest.mark.parametrize("seed", range(8))
