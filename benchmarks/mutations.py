@@ -126,6 +126,7 @@ MUTATIONS = [
         ("diagnose/bent_teeth.py", "_along_profile(up, int(side) * lean)", "(0.0, 0.0, 0.0)", "diagnose/core/test_bent_teeth.py"),
         ("diagnose/effects/bent_tooth.py", "/ context.gear.face_width - 0.5", "/ context.gear.face_width", "diagnose/test_bent_tooth.py"),
         ("diagnose/effects/pitch.py", "if tooth not in bent", "if True", "diagnose/test_bent_tooth.py"),
+        ("diagnose/loop.py", "if bent == result.context.bent:", "if True:", "comparison/test_bent_tooth.py"),
         ("diagnose/loop.py", "target=fit.target - moved", "target=fit.target", "comparison/test_bent_tooth.py"),
         ("comparison/before.py", " - _bent(after)", "", "comparison/test_bent_tooth.py"),
         ("diagnose/active_face.py", "misfit[fitted[:, -1] <= 0.0] = math.inf", "pass", "diagnose/core/test_active_face.py"),

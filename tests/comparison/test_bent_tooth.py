@@ -10,6 +10,8 @@ import pytest
 import gearwear as gw
 from gearwear.comparison.stations import compare
 from gearwear.design.pair import Design
+from gearwear.diagnose import loop
+from gearwear.diagnose.bent_teeth import Bent
 from gearwear.report.records.comparison import document
 from gearwear.report.words.effects import found_words
 from tests.commands.doors import ALONE, scan_file
@@ -70,6 +72,24 @@ def test_two_beside_each_other_are_both_told(tmp_path):
     for number, true in ((TOOTH + 1, 40.0), (TOOTH + 2, 60.0)):
         assert abs(told[number].value - true) < 3.0 * told[number].std < 6.0
     assert found.wear.regions == ()
+
+
+def test_one_that_a_first_look_takes_for_bent_and_the_loop_does_not_has_an_index_like_the_others(tmp_path, monkeypatch):
+    monkeypatch.setattr(loop, "bent_teeth", lambda cells: (Bent(TOOTH, (0.03, 0.02, 0.0)),))
+    index = [0.0, 12.0, -8.0, 15.0, 0.0, -11.0, 3.0, 15.0, 9.0, -14.0, -6.0, -15.0]
+    files, _ = scan_file(
+        tmp_path,
+        "cut",
+        Recipe(jitter=1.0, noise_um=8.0, pose="none", effects=(Effect("pitch", {"index_um": index}),)).of_size(40_000),
+        3,
+    )
+    with plain_effects("bent_tooth", "pitch"):
+        found = compare(ALONE, files, inspection=False)
+    assert found.measured.loop.context.bent == ()
+    (one,) = found.measured.loop.effects
+    assert one.name == "pitch"
+    told = one.parameters["index_um"]
+    assert abs(told.value[TOOTH] - index[TOOTH]) < 3.0 * told.std[TOOTH] < 3.0
 
 
 @pytest.mark.parametrize("plain", [True, pytest.param(False, marks=pytest.mark.long)])
