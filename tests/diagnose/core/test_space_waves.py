@@ -154,7 +154,10 @@ def test_sides_are_asked_again_without_what_goes_round_but_not_beside_a_large_fo
     def closed(*parameters):
         told.append(parameters[-1])
         finished.append(0)
-        loop, number = SimpleNamespace(residual_after=field, patterns=(round_, all_teeth)), len(told)
+        loop = SimpleNamespace(
+            residual_after=field, patterns=(round_, all_teeth), form=(), effects=(), context=SimpleNamespace(bent=())
+        )
+        number = len(told)
 
         def whole():
             finished[number - 1] += 1
