@@ -115,9 +115,7 @@ def _along_profile(up: Floats, values: Floats) -> tuple[float, float, float]:
 def _slopes(profile: Floats, up: Floats) -> Floats:
     """Rise of each profile (…, columns) from the form circle to the tip, mm: the median over the pairs of its columns; nan where none are known."""
     first, second = np.triu_indices(len(up), 1)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # flanks nobody saw
-        return np.asarray(np.nanmedian((profile[..., second] - profile[..., first]) / (up[second] - up[first]), axis=-1))
+    return _medians((profile[..., second] - profile[..., first]) / (up[second] - up[first]), axis=-1)
 
 
 def _outlying(values: Floats) -> Bools:

@@ -17,7 +17,6 @@ from gearwear.diagnose.masks import folds
 from gearwear.diagnose.pattern import Pattern, along_face, find_patterns, joined, order_share
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
-from gearwear.diagnose.taken_back import beside_pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +79,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
                 model = cancelled
                 continue
             worst = _taken_back_by_teeth(fit, problem, model, evidence, kept)
-        if worst is None and pieces_of is None:
-            worst = _most_uneven(whole, problem, model)
+            worst = _most_uneven(whole, problem, model) if worst is None else worst
             worst = hidden_among_orders(waves, problem, model) if worst is None else worst
         if worst is None:
             patterns = joined(fit.cells.grid, known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise))
@@ -145,10 +143,8 @@ def _taken_back_by_teeth(fit: Fit, problem: Problem, model: Model, evidence: lis
     if not (specific.any() and shared.any()):
         return None
     amplitudes, _ = problem.gram.solve(problem.columns(model))
-    columns, weight = fit.columns(model), np.where(fit.use, fit.weight, 0.0)
-    fields = np.column_stack([columns[:, part] @ amplitudes[part] for part in fit.parts(model)])
-    fields = beside_pose(fields, fit.dictionary.take(fit.dictionary.pose), weight)
-    product = fields.T @ (weight[:, None] * fields)
+    fields = fit.fields(model, amplitudes, range(len(model)))
+    product = fields.T @ (fit.weight[:, None] * fields)
     given = product < (rules().left_of_it - 1.0) * np.diag(product)  # [i, j]: of j by i
     pairs = given & given.T & specific[:, None] & shared
     back = pairs.any(axis=0) | pairs.any(axis=1)

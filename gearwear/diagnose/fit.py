@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -22,6 +23,7 @@ from gearwear.diagnose.pattern import runs_along_face
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.shapes import shape_columns
+from gearwear.diagnose.taken_back import beside_pose
 from gearwear.placing.cells import Cells
 from gearwear.robust import median_scale, tukey_weight
 
@@ -196,6 +198,12 @@ class Fit:
         """Where each effect's amplitudes stand in the fit."""
         ends = len(self.dictionary.pose) + np.cumsum([0, *(len(c.columns) for c in model)])
         return [slice(low, high) for low, high in pairwise(ends.tolist())]
+
+    def fields(self, model: Model, amplitudes: Floats, which: Iterable[int]) -> Floats:
+        """What some effects of a model do to the deviation of cells beside the pose, (m, k) mm."""
+        parts = self.parts(model)
+        fields = np.column_stack([self.dictionary.take(model[i].columns) @ amplitudes[parts[i]] for i in which])
+        return beside_pose(fields, self.dictionary.take(self.dictionary.pose), self.weight)
 
     def uneven(self, model: Model, amplitudes: Floats, index: int) -> float:
         """How differently two halves of the gear show an effect of the model: greatest difference of their relative size

@@ -33,7 +33,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.smooth_form import as_smooth_form
 from gearwear.diagnose.space_waves import SpaceWave
-from gearwear.diagnose.taken_back import beside_pose, taken_back
+from gearwear.diagnose.taken_back import taken_back
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -445,11 +445,8 @@ def _with_taken_back(fit: Fit, problem: Problem, model: Model, evidence: list[Ev
     at = [i for i, one in enumerate(model) if not (one.effect.tooth_specific or one.effect.kind is Kind.FORM)]
     if len(at) < 2:
         return evidence, None
-    amplitudes, parts = _amplitudes(fit, problem, model), fit.parts(model)
-    fields = np.column_stack([fit.dictionary.take(model[i].columns) @ amplitudes[parts[i]] for i in at])
-    weight, points = np.where(fit.use, fit.covariance.weight, 0.0), fit.cells.points
-    fields = beside_pose(fields, fit.dictionary.take(fit.dictionary.pose), weight)
-    back = taken_back(fields, weight, points.surface)
+    fields = fit.fields(model, _amplitudes(fit, problem, model), at)
+    back = taken_back(fields, fit.weight, fit.cells.points.surface)
     told = dict(zip(at, back.tolist(), strict=True))
     together = np.where(fit.cells.seen, fields[:, back].sum(axis=1), 0.0) if back.any() else None
     return [replace(one, taken_back=told.get(i, False)) for i, one in enumerate(evidence)], together

@@ -161,20 +161,16 @@ def check_settings(settings: Settings, gear: Gear) -> None:
         raise InputError(
             f"the profile evaluation from {first:g} to {last:g} mm of roll is empty: from root to tip would be right, which are at {form:.3f} and {tip:.3f} mm"
         )
-    if settings.helix_between is not None and not (
-        0.0 <= settings.helix_between[0] < settings.helix_between[1] <= gear.face_width
+    for name, band, (low, high), of, whole in (
+        ("profile evaluation", (first, last), involute, "of roll: the involute", False),
+        ("band of the helix traces", settings.helix_band, involute, "of roll: the involute", False),
+        ("helix evaluation", settings.helix_between, face, "of height: the face", True),
+        ("band of the profile traces", settings.profile_band, face, "of height: the face", False),
+        ("band of the pitch", settings.pitch_band, face, "of height: the face", False),
     ):
-        raise InputError(
-            f"the helix evaluation from {as_given(settings.helix_between[0])} to {as_given(settings.helix_between[1])} mm of height: "
-            f"the face goes from {at_least(0.0, 3)} to {at_most(gear.face_width, 3)} mm"
-        )
-    for name, band, (low, high), of in (
-        ("profile evaluation", (first, last), involute, "of roll: the involute"),
-        ("band of the helix traces", settings.helix_band, involute, "of roll: the involute"),
-        ("band of the profile traces", settings.profile_band, face, "of height: the face"),
-        ("band of the pitch", settings.pitch_band, face, "of height: the face"),
-    ):
-        if band is not None and not (min(band) < high and max(band) > low):
+        if band is None:
+            continue
+        if not (low <= min(band) and max(band) <= high if whole else min(band) < high and max(band) > low):
             raise InputError(
                 f"the {name} from {as_given(band[0])} to {as_given(band[1])} mm {of} goes from {at_least(low, 3)} to {at_most(high, 3)} mm"
             )

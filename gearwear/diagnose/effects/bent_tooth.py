@@ -24,8 +24,8 @@ class BentTooth(CatalogueEffect):
     Notes
     -----
     An overload that bends a tooth for good moves its metal and takes none off: one flank lies low by what the other stands proud, and the tooth is as thick
-    as it was. Where the load lay at one end, that end bent more. A tooth that turns about its root moves at the form circle too; what it was off its place before is in that, and it has no index of its own
-    (`pitch`). Which teeth are asked `bent_teeth` finds; the amounts are fitted with all else.
+    as it was. Where the load lay at one end, that end bent more. A tooth that turns about its root moves at the form circle too; what it was off its place
+    before is in that, and it has no index of its own (`pitch`). Which teeth are asked `bent_teeth` finds; the amounts are fitted with all else.
     """
 
     name: ClassVar[str] = BENT_TOOTH
